@@ -1,0 +1,5 @@
+#include <cstdio>
+
+#include "core/provenance.hpp"
+
+int main() { std::puts(fw::version().c_str()); }

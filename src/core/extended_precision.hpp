@@ -1,0 +1,19 @@
+#pragma once
+
+#include <boost/multiprecision/float128.hpp>
+
+#include "core/types.hpp"
+
+namespace fw {
+
+/// IEEE binary128 (113-bit significand, about 34 decimal digits): the arithmetic of reference solutions.
+/// Functions such as `sqrt` and `sin` are found by argument-dependent lookup.
+using Float128 = boost::multiprecision::float128;
+
+/// The part of a number by which a right-hand side may branch. Differentiation by a complex step perturbs
+/// the imaginary part only, so a comparison has to look at the real part.
+inline double real_part(double x) { return x; }
+inline const Float128& real_part(const Float128& x) { return x; }
+inline double real_part(const Complex& x) { return x.real(); }
+
+}  // namespace fw

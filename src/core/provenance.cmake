@@ -1,0 +1,33 @@
+# Adds the build's provenance (commit, compiler, flags, library versions) to fw_core.
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+set(provenance_flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}")
+get_target_property(provenance_options federwerk_options INTERFACE_COMPILE_OPTIONS)
+foreach(option IN LISTS provenance_options)
+  if(NOT option MATCHES "^\\$" AND NOT option MATCHES "^-W" AND NOT option STREQUAL "")
+    string(APPEND provenance_flags " ${option}")
+  endif()
+endforeach()
+if(FEDERWERK_NATIVE)
+  string(APPEND provenance_flags " -march=native")
+endif()
+string(STRIP "${provenance_flags}" provenance_flags)
+
+string(JOIN " " provenance_libraries
+  "Boost=${Boost_VERSION_STRING}" "CLI11=${CLI11_VERSION}" "Eigen=${Eigen3_VERSION}" "fmt=${fmt_VERSION}"
+  "GSL=${GSL_VERSION}" "HDF5=${HDF5_VERSION}" "OpenSSL=${OPENSSL_VERSION}" "PETSc=${PETSC_VERSION}"
+  "SUNDIALS=${SUNDIALS_VERSION}" "toml++=${TOMLPP_VERSION}")
+
+set(provenance_dir ${CMAKE_CURRENT_BINARY_DIR}/generated)
+add_custom_target(provenance
+  BYPRODUCTS ${provenance_dir}/provenance_build.hpp
+  COMMAND ${CMAKE_COMMAND} "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}"
+          "-DTEMPLATE=${CMAKE_CURRENT_SOURCE_DIR}/core/provenance_build.hpp.in"
+          "-DOUTPUT=${provenance_dir}/provenance_build.hpp"
+          "-DVERSION=${PROJECT_VERSION}"
+          "-DCOMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
+          "-DCOMPILER_FLAGS=${provenance_flags}"
+          "-DLIBRARIES=${provenance_libraries}"
+          -P ${CMAKE_CURRENT_SOURCE_DIR}/core/write_provenance.cmake
+  VERBATIM)
+add_dependencies(fw_core provenance)
+target_include_directories(fw_core PRIVATE ${provenance_dir})

@@ -1,0 +1,15 @@
+# Run at each build: writes provenance_build.hpp when commit, work tree or flags have changed.
+execute_process(COMMAND git -C ${SOURCE_DIR} rev-parse HEAD
+                OUTPUT_VARIABLE GIT_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+if(failed)
+  set(GIT_COMMIT unknown)
+  set(GIT_DIRTY false)
+else()
+  execute_process(COMMAND git -C ${SOURCE_DIR} status --porcelain OUTPUT_VARIABLE changes ERROR_QUIET)
+  if(changes STREQUAL "")
+    set(GIT_DIRTY false)
+  else()
+    set(GIT_DIRTY true)
+  endif()
+endif()
+configure_file(${TEMPLATE} ${OUTPUT} @ONLY)

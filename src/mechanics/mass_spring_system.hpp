@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "mechanics/mass_spring_model.hpp"
+#include "ode/ode_system.hpp"
+
+namespace fw::mechanics {
+
+/// Energies of a state [J].
+struct Energies {
+  double kinetic = 0.0;        ///< ½ Σ m v²
+  double elastic = 0.0;        ///< springs and anchors
+  double gravitational = 0.0;  ///< −Σ m g·x
+  double obstacle = 0.0;       ///< Σ ½ k δ²
+  double potential() const { return elastic + gravitational + obstacle; }
+  double total() const { return kinetic + potential(); }
+};
+
+/// A damped mass-spring system as a first-order system y = (x, v), particle i at 3i, 3i+1, 3i+2 of each half
+/// [Zachmann 2011, S5-S9].
+class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
+ public:
+  /// Checks sizes, index ranges and signs of the parameters; throws InputError that names the entry.
+  explicit MassSpringSystem(MassSpringModel model);
+  ~MassSpringSystem() override;
+
+  const MassSpringModel& model() const { return model_; }
+  Index particle_count() const { return static_cast<Index>(model_.mass.size()); }
+
+  // OdeSystem
+  Index size() const override;
+  void rhs(double t, ConstVectorRef y, VectorRef dydt) const override;
+  void rhs(const Float128& t, std::span<const Float128> y, std::span<Float128> dydt) const override;
+  void rhs(double t, std::span<const Complex> y, std::span<Complex> dydt) const override;
+  SparseMatrix jacobian_pattern() const override;
+  void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override;
+  void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override;
+  const SecondOrderSystem* second_order() const override { return this; }
+
+  // SecondOrderSystem
+  Index degrees_of_freedom() const override;
+  const Vector& mass() const override { return mass_; }
+  const std::vector<char>& fixed() const override { return fixed_; }
+  ForceClass force_class() const override { return force_class_; }
+  void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
+  SparseMatrix tangent_pattern() const override;
+  void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
+                 SparseMatrix& K) const override;
+  void damping(double t, ConstVectorRef q, ConstVectorRef v, SparseMatrix& D) const override;
+  void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq, ConstVectorRef dv,
+                       VectorRef out) const override;
+
+  /// Energies of the state (q, v).
+  Energies energies(ConstVectorRef q, ConstVectorRef v) const;
+  /// Σ m v over all particles [kg·m/s].
+  Vec3<double> linear_momentum(ConstVectorRef v) const;
+  /// Σ x × m v about the origin [kg·m²/s].
+  Vec3<double> angular_momentum(ConstVectorRef q, ConstVectorRef v) const;
+  /// Power that dampers, drag, anchors' and obstacles' damping take out of the system [W], ≥ 0.
+  double dissipated_power(ConstVectorRef q, ConstVectorRef v) const;
+
+  /// How often a spring of length zero (direction undefined, force defined as zero) was met in an evaluation
+  /// since the system was made.
+  std::uint64_t degenerate_spring_evaluations() const { return degenerate_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Layout;  ///< positions of each spring's blocks in the matrices, made once on first use
+
+  MassSpringModel model_;
+  Vector mass_;              ///< 3n, model_.mass repeated
+  std::vector<char> fixed_;  ///< 3n
+  ForceClass force_class_;
+  mutable std::atomic<std::uint64_t> degenerate_{0};
+};
+
+}  // namespace fw::mechanics

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <variant>
+
+namespace fw {
+
+/// Constant steps, t_n = t₀ + n·h computed from the index. Where t₁ − t₀ is not a whole number of steps, a
+/// one-step scheme takes one shorter last step if `allow_short_last_step`; a multistep scheme refuses.
+struct FixedStep {
+  double step = 0.0;  ///< h [s], > 0
+  bool allow_short_last_step = true;
+};
+
+/// Steps chosen by an error estimate: |error_i| ≲ relative·|y_i| + absolute.
+struct AdaptiveStep {
+  double relative_tolerance = 1e-6;
+  double absolute_tolerance = 1e-9;
+  double initial_step = 0.0;  ///< [s]; 0: chosen by the scheme
+  double minimum_step = 0.0;  ///< [s]
+  double maximum_step = std::numeric_limits<double>::infinity();  ///< [s]
+  std::uint64_t maximum_steps = 100'000'000;
+};
+
+using StepControl = std::variant<FixedStep, AdaptiveStep>;
+
+/// How an interval divides into steps.
+struct StepCount {
+  std::uint64_t whole = 0;   ///< number of steps of length h
+  double remainder = 0.0;    ///< length of a shorter last step [s], 0 if none
+  std::uint64_t total() const { return whole + (remainder > 0.0 ? 1 : 0); }
+};
+
+/// Divides t₁ − t₀ by h. A quotient within a relative 1e-9 of a whole number counts as whole. Throws
+/// InputError unless h > 0, t₁ > t₀, both finite, and there are fewer than 2⁵³ steps.
+StepCount count_steps(double t0, double t1, double step);
+
+}  // namespace fw
