@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fw::study {
+
+/// The outcome of a case against what theory predicts.
+enum class Verdict { holds, fails, not_applicable };
+
+/// "holds", "fails", "not applicable".
+std::string_view to_string(Verdict verdict);
+
+/// Values of one column; text is UTF-8.
+using ColumnValues = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
+
+/// A named array with a unit ("1" where it has no dimension, "" for text). `shape` is row-major; empty means one
+/// dimension with as many entries as there are values. `attributes` are further facts, for example the norm.
+struct Column {
+  std::string name;
+  std::string unit;
+  ColumnValues values;
+  std::vector<std::uint64_t> shape;
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+/// One cell of a summary row.
+struct SummaryCell {
+  std::string name;
+  std::string unit;
+  std::variant<double, std::int64_t, std::string> value;
+};
+
+/// What one case of a study found. `columns` are its raw data, `summary` is its row of the summary (the same
+/// names, units and types, in the same order, in every case of a study; "verdict" and "reason" among them).
+struct CaseResult {
+  std::string id;   ///< group name in the file, unique in the study: "<problem>-<method>", no '/'
+  std::string key;  ///< SHA-256 of the resolved case: what makes it the same case in another run
+  std::vector<Column> columns;
+  std::vector<SummaryCell> summary;
+  Verdict verdict = Verdict::not_applicable;
+  std::string reason;
+};
+
+/// The result of a study: everything a result file holds but its provenance.
+struct StudyResult {
+  std::string kind;   ///< for example "convergence"
+  std::string title;
+  std::string spec;   ///< the resolved input as TOML text
+  std::int64_t seed = 0;
+  bool complete = true;  ///< false if cases are missing (interrupted)
+  std::vector<CaseResult> cases;
+};
+
+}  // namespace fw::study
