@@ -12,6 +12,9 @@ namespace fw::analysis {
 
 namespace {
 
+/// A finer step that gains less than this is at a floor: schemes of interest have order 1 or more.
+constexpr double smallest_slope = 0.5;
+
 /// The contiguous candidates after rules 1 and 2: [first, last).
 std::pair<std::size_t, std::size_t> monotone_range(std::span<const double> errors, double floor) {
   const auto usable = [&](double e) { return std::isfinite(e) && e > 0.0 && e > floor; };
@@ -59,9 +62,14 @@ OrderFit fit_order(std::span<const double> steps, std::span<const double> errors
   for (std::size_t k = first; k + 1 < last; ++k) {
     slope[k] = (log_error[k] - log_error[k + 1]) / (log_step[k] - log_step[k + 1]);
   }
-  const double asymptotic = median_of_finest(slope, first, last - 1);
+  while (last - first >= 2 && slope[last - 2] < smallest_slope) --last;
+  if (last - first < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - first);
+  double asymptotic = median_of_finest(slope, first, last - 1);
   const auto agrees = [&](std::size_t k) { return std::abs(slope[k] - asymptotic) <= slope_tolerance; };
-  while (last - first >= 2 && !agrees(last - 2)) --last;
+  while (last - first > static_cast<std::size_t>(minimum_fit_points) && !agrees(last - 2)) {
+    --last;
+    asymptotic = median_of_finest(slope, first, last - 1);
+  }
   std::size_t begin = last - 1;
   while (begin > first && agrees(begin - 1)) --begin;
   if (last - begin < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - begin);

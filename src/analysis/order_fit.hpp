@@ -25,10 +25,11 @@ inline constexpr int minimum_fit_points = 5;
 ///
 /// Which points enter is decided by the data alone, never by the order that is expected:
 ///  1. a point whose error is not finite, zero, or at most `floor` (rounding, reference) is out;
-///  2. from the coarse side on, everything after the first point whose error did not fall is out (noise);
+///  2. from the coarse side on, everything after the first point whose error did not fall is out (noise), and so are the
+///     finest points while their local slope is below 1/2 (a floor that nobody told of);
 ///  3. with the local slopes s_k = log(e_k/e_{k+1})/log(h_k/h_{k+1}) and s* the median of the three finest, the
-///     finest point is dropped while its slope differs from s* by more than `slope_tolerance`, and the range is
-///     extended to coarser points while it does not (pre-asymptotic range).
+///     finest point is dropped (and s* taken anew) while its slope differs from s* by more than
+///     `slope_tolerance`, and the range is extended to coarser points while it does not (pre-asymptotic range).
 OrderFit fit_order(std::span<const double> steps, std::span<const double> errors, double floor,
                    double slope_tolerance = 0.1);
 
