@@ -1,0 +1,126 @@
+"""The shell scripts: usage, honest exit codes, and what bootstrap does, against package tools that only pretend."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+CHECKOUT = pathlib.Path(__file__).resolve().parent.parent.parent
+SCRIPTS = CHECKOUT / "scripts"
+COMMANDS = [SCRIPTS / name for name in ("bootstrap", "build", "test", "reproduce", "check_format")]
+
+
+def run(command, path=None, cwd="/"):
+    environment = dict(os.environ)
+    if path:
+        environment["PATH"] = f"{path}:{environment['PATH']}"
+    return subprocess.run([str(word) for word in command], cwd=cwd, env=environment, stdin=subprocess.DEVNULL,
+                          text=True, capture_output=True, check=False)
+
+
+class Usage(unittest.TestCase):
+    def test_help_is_given_from_any_directory(self):
+        for command in COMMANDS:
+            with self.subTest(command.name):
+                answer = run([command, "--help"])
+                self.assertEqual(answer.returncode, 0, answer.stderr)
+                self.assertIn("usage:", answer.stdout)
+
+    def test_an_unknown_option_is_bad_usage_and_is_named(self):
+        for command in COMMANDS:
+            with self.subTest(command.name):
+                answer = run([command, "--instal"])
+                self.assertEqual(answer.returncode, 2)
+                self.assertIn("--instal", answer.stderr)
+
+    def test_shell_scripts_parse(self):
+        for command in [*COMMANDS, SCRIPTS / "python", CHECKOUT / ".ci" / "run"]:
+            with self.subTest(command.name):
+                answer = run(["bash", "-n", command])
+                self.assertEqual(answer.returncode, 0, answer.stderr)
+
+
+class Bootstrap(unittest.TestCase):
+    """dpkg-query, apt-cache and apt-get are replaced by scripts that keep a list of packages in a file."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="feder werk ")
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.installed = self.root / "installed"
+        self.log = self.root / "log"
+        self.log.touch()
+        (self.root / "scripts").mkdir()
+        (self.root / "bin").mkdir()
+        shutil.copy(SCRIPTS / "bootstrap", self.root / "scripts")
+        (self.root / "scripts" / "packages.txt").write_text("# tools\ng++   compiler\nninja  # build\n")
+        self.tool("id", "echo 0")
+        self.tool("dpkg-query", f'sed "s/^/installed /" "{self.installed}"')
+        self.tool("apt-cache", 'shift; for p in "$@"; do echo "  Candidate: 1.0"; done')
+        self.apt_get()
+
+    def tool(self, name, text):
+        path = self.root / "bin" / name
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+
+    def apt_get(self, fails_until_updated=False):
+        condition = f'grep -q update "{self.log}"' if fails_until_updated else "true"
+        self.tool("apt-get", f'''echo "$DEBIAN_FRONTEND $*" >>"{self.log}"
+case "$*" in *" install "*) {condition} && printf 'g++\\nninja\\n' >"{self.installed}" ;; esac''')
+
+    def bootstrap(self, *options):
+        return run([self.root / "scripts" / "bootstrap", *options], path=self.root / "bin")
+
+    def test_does_nothing_where_all_is_installed(self):
+        self.installed.write_text("g++\nninja\n")
+        answer = self.bootstrap()
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(self.log.read_text(), "")
+
+    def test_no_install_names_what_is_missing_and_installs_nothing(self):
+        self.installed.write_text("g++\n")
+        answer = self.bootstrap("--no-install")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("1 of 2 packages are missing: ninja", answer.stdout)
+        self.assertEqual(self.log.read_text(), "")
+
+    def test_installs_only_what_is_missing_without_recommended_packages(self):
+        self.installed.write_text("g++\n")
+        answer = self.bootstrap()
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        calls = self.log.read_text().splitlines()
+        self.assertEqual(len(calls), 1, calls)
+        self.assertRegex(calls[0], r"^noninteractive .*install --no-install-recommends ninja$")
+
+    def test_fetches_the_package_lists_where_apt_knows_no_candidate(self):
+        self.installed.write_text("")
+        self.tool("apt-cache", "true")
+        self.assertEqual(self.bootstrap().returncode, 0)
+        self.assertRegex(self.log.read_text(), r"(?s)update.*install")
+
+    def test_tries_again_with_fresh_lists_where_they_are_stale(self):
+        self.installed.write_text("")
+        self.apt_get(fails_until_updated=True)
+        self.assertEqual(self.bootstrap().returncode, 0)
+        self.assertRegex(self.log.read_text(), r"(?s)install.*update.*install")
+
+    def test_fails_where_apt_fails(self):
+        self.installed.write_text("")
+        self.tool("apt-get", "exit 100")
+        answer = self.bootstrap()
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("could not install", answer.stderr)
+
+    def test_fails_where_apt_claims_success_but_a_package_is_still_missing(self):
+        self.installed.write_text("")
+        self.tool("apt-get", "exit 0")
+        answer = self.bootstrap()
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("still missing: g++ ninja", answer.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
