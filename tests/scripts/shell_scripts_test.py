@@ -109,10 +109,12 @@ case "$*" in *" install "*) {condition} && printf 'g++\\nninja\\n' >"{self.insta
 
     def test_fails_where_apt_fails(self):
         self.installed.write_text("")
-        self.tool("apt-get", "exit 100")
-        answer = self.bootstrap()
-        self.assertEqual(answer.returncode, 1)
-        self.assertIn("could not install", answer.stderr)
+        for failing, message in (("install", "could not install"), ("", "could not fetch the package lists")):
+            with self.subTest(message):
+                self.tool("apt-get", f'case "$*" in *"{failing}"*) exit 100 ;; esac')
+                answer = self.bootstrap()
+                self.assertEqual(answer.returncode, 1)
+                self.assertIn(message, answer.stderr)
 
     def test_fails_where_apt_claims_success_but_a_package_is_still_missing(self):
         self.installed.write_text("")
