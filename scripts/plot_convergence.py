@@ -81,7 +81,8 @@ def draw_panel(result, axes, quantity, rows):
     axes.set_xlabel(label("step h", unit_step))
     axes.set_ylabel(label(QUANTITIES.get(quantity, "error"), unit_error))
     if missing:
-        axes.set_title(f"{missing} not shown: zero or not finite", loc="right", fontsize=9.5, color=ALARM)
+        axes.annotate(f"{missing} not shown: zero or not finite", (1.0, 0.0), xytext=(0, -50), ha="right",
+                      xycoords="axes fraction", textcoords="offset points", fontsize=9.5, color=ALARM)
 
 
 def draw_legend(axes, rows, name):
