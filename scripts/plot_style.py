@@ -1,0 +1,132 @@
+"""How federwerk's pictures look, and how they are saved: import this first in every plot script.
+
+Where this Python lacks numpy, h5py or matplotlib, the script starts again with /usr/bin/python3, which has them on
+a machine that scripts/bootstrap set up.
+"""
+
+import argparse
+import os
+import pathlib
+import sys
+
+try:
+    import h5py  # noqa: F401
+    import matplotlib
+    import numpy  # noqa: F401
+except ImportError as missing:
+    SYSTEM_PYTHON = "/usr/bin/python3"
+    if not sys.argv[0].endswith(".py") or os.environ.get("FEDERWERK_RESTARTED") or not os.path.exists(SYSTEM_PYTHON):
+        sys.exit(f"{sys.executable}: {missing}; install the packages python3-numpy, python3-h5py and "
+                 "python3-matplotlib (scripts/bootstrap does) or use a Python that has them")
+    os.environ["FEDERWERK_RESTARTED"] = "1"
+    os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+from result_file import ResultError, ResultFile  # noqa: E402
+
+# Okabe and Ito 2008: told apart with every kind of colour vision. Its yellow is too pale for lines on white.
+PALETTE = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<"]  # as many as are coprime to the colours: 56 pairs
+EXACT = "#000000"
+QUIET = "#767676"   # references, grids, footers: dark enough to read on a projector
+ALARM = "#B00020"
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans",
+    "font.size": 12,
+    "axes.titlesize": 13,
+    "axes.labelsize": 12,
+    "legend.fontsize": 10.5,
+    "legend.frameon": False,
+    "figure.titlesize": 15,
+    "axes.prop_cycle": plt.cycler(color=PALETTE),
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "lines.linewidth": 1.8,
+    "lines.markersize": 6,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 160,
+    "pdf.fonttype": 42,  # text stays text
+})
+
+
+def look(index):
+    """Colour and marker of the series number `index`."""
+    return {"color": PALETTE[index % len(PALETTE)], "marker": MARKERS[index % len(MARKERS)]}
+
+
+def label(quantity, unit):
+    """An axis label: "step h [s]"; a quantity without dimension has no brackets."""
+    unit = unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
+    return quantity if unit in ("", "1") else f"{quantity} [{unit}]"
+
+
+def number(value):
+    """A number as one would write it on a board: 0.5, 1e-05, 2.00001."""
+    return f"{value:.6g}"
+
+
+def new_figure(result, width, height, rows=1, columns=1, **options):
+    """A figure with the study's title above and its provenance below; returns it and its axes, always 2D."""
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **options)
+    figure.suptitle(result.title)
+    footer_height = 0.3 / height
+    figure.get_layout_engine().set(rect=(0, footer_height, 1, 1 - footer_height), w_pad=0.1, h_pad=0.1)
+    figure.text(8 / (72 * width), 6 / (72 * height), result.provenance(), fontsize=8.5,
+                color=QUIET if result.complete else ALARM, va="bottom")
+    return figure, axes
+
+
+def save(figures, result, directory):
+    """Writes each figure as PNG and PDF, named after the result file, and returns the PNGs' paths."""
+    written = []
+    for index, figure in enumerate(figures, start=1):
+        stem = result.path.stem if len(figures) == 1 else f"{result.path.stem}-{index}"
+        for extension in ("png", "pdf"):
+            path = directory / f"{stem}.{extension}"
+            # The picture depends on the result file alone: no time of drawing in it.
+            options = {"metadata": {"CreationDate": None}} if extension == "pdf" else {}
+            figure.savefig(path.with_name("." + path.name), format=extension, **options)
+            os.replace(path.with_name("." + path.name), path)
+        written.append(directory / f"{stem}.png")
+        plt.close(figure)
+    return written
+
+
+def main(description, choose_drawing, arguments=None):
+    """The command line of a plot script. `choose_drawing(result)` gives the function that makes the figures of a
+    result, or None where there is nothing to draw. Exit code: 0 drawn, 2 a file is not what it should be."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE.h5")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DIR", help="default: beside each file")
+    options = parser.parse_args(arguments)
+    for path in options.files:
+        try:
+            with ResultFile(path) as result:
+                draw = choose_drawing(result)
+                if draw is None:
+                    print(f'{path}: nothing to draw for kind "{result.kind}"')
+                    continue
+                directory = options.output or path.parent
+                directory.mkdir(parents=True, exist_ok=True)
+                for written in save(draw(result), result, directory):
+                    print(written)
+        except ResultError as error:
+            print(error, file=sys.stderr)
+            return 2
+    return 0
+
+
+def expect_kind(kind, draw):
+    """For `main`: draws results of this kind and refuses all others."""
+    def choose(result):
+        result.expect_kind(kind)
+        return draw
+    return choose

@@ -1,0 +1,108 @@
+"""Reads federwerk's result files (docs/results_schema.md). Reads only: every number is computed by federwerk."""
+
+import pathlib
+
+import h5py
+import numpy
+
+
+class ResultError(Exception):
+    """A file that is not what it should be; the message names the file."""
+
+
+def text(value):
+    """Text of an attribute or of an entry of a column."""
+    return value.decode("utf-8") if isinstance(value, bytes) else str(value)
+
+
+class ResultFile:
+    """An open result file; use it in a with statement."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path)
+        try:
+            self.file = h5py.File(self.path, "r")
+        except OSError as error:
+            raise ResultError(f"{self.path}: cannot be read as HDF5: {error}") from error
+        attributes = self.file.attrs
+        if text(attributes.get("format", "")) != "federwerk":
+            raise ResultError(f'{self.path}: not a result file of federwerk (no attribute format = "federwerk")')
+        self.kind = text(attributes.get("kind", ""))
+        self.title = text(attributes.get("title", self.path.stem))
+        self.complete = text(attributes.get("status", "complete")) == "complete"
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+
+    def error(self, message):
+        return ResultError(f"{self.path}: {message}")
+
+    def expect_kind(self, kind):
+        if self.kind != kind:
+            raise self.error(f'found kind "{self.kind}", expected "{kind}"')
+
+    def provenance(self):
+        """One line: title, commit, date."""
+        attributes = self.file.attrs
+        commit = text(attributes.get("git_commit", "unknown"))[:10]
+        dirty = " + uncommitted changes" if bool(attributes.get("git_dirty", False)) else ""
+        created = text(attributes.get("created", "unknown date"))[:10]
+        partial = "" if self.complete else " · INCOMPLETE: cases are missing"
+        return f"{self.title} · federwerk {commit}{dirty} · {created}{partial}"
+
+    def dataset(self, name, group=None):
+        parent = self.file if group is None else group
+        if name not in parent:
+            raise self.error(f"found no {parent.name.rstrip('/')}/{name}")
+        return parent[name]
+
+    def values(self, name, group=None):
+        """A dataset's values as an array of numbers, or as a list where they are text."""
+        data = self.dataset(name, group)[()]
+        if isinstance(data, (bytes, str)):
+            return text(data)
+        if data.dtype.kind in "OS":
+            return [text(entry) for entry in data]
+        return data
+
+    def unit(self, name, group=None):
+        return text(self.dataset(name, group).attrs.get("unit", ""))
+
+    def cases(self):
+        """The groups below /cases by name, without the vector field."""
+        groups = self.dataset("cases")
+        found = {name: group for name, group in groups.items() if name != "vector_field"}
+        if not found:
+            raise self.error("found no case below /cases")
+        return found
+
+    def summary(self):
+        """The rows of the summary: a list of dictionaries, column name to value."""
+        columns = {name: self.values(name) for name in
+                   (f"summary/{column}" for column in self.dataset("summary"))}
+        lengths = {len(column) for column in columns.values()}
+        if len(lengths) != 1:
+            raise self.error(f"the columns of /summary have the lengths {sorted(lengths)}, expected one length")
+        names = [name.split("/", 1)[1] for name in columns]
+        return [dict(zip(names, row)) for row in zip(*columns.values())]
+
+    def case_of(self, row):
+        """The group of the case that a summary row describes."""
+        name = row.get("case") or row.get("id") or f"{row.get('problem')}-{row.get('method')}"
+        return self.dataset(f"cases/{name}")
+
+    def fact(self, name, group):
+        """What a case says of itself, as an attribute or as a column with one entry."""
+        if name in group.attrs:
+            value = group.attrs[name]
+        else:
+            value = self.values(name, group)
+        if isinstance(value, (bytes, str)):
+            return text(value)
+        value = numpy.ravel(numpy.asarray(value, dtype=object))
+        if len(value) != 1:
+            raise self.error(f"{group.name}/{name} has {len(value)} entries, expected one")
+        return text(value[0]) if isinstance(value[0], (bytes, str)) else float(value[0])

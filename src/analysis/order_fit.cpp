@@ -1,0 +1,92 @@
+#include "analysis/order_fit.hpp"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
+#include <gsl/gsl_statistics_double.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::analysis {
+
+namespace {
+
+/// A finer step that gains less than this is at a floor: schemes of interest have order 1 or more.
+constexpr double smallest_slope = 0.5;
+
+/// The contiguous candidates after rules 1 and 2: [first, last).
+std::pair<std::size_t, std::size_t> monotone_range(std::span<const double> errors, double floor) {
+  const auto usable = [&](double e) { return std::isfinite(e) && e > 0.0 && e > floor; };
+  std::size_t first = 0;
+  while (first < errors.size() && !usable(errors[first])) ++first;
+  std::size_t last = first;
+  while (last < errors.size() && usable(errors[last])) {
+    // At the coarse end an error may still rise while the solution is not resolved at all.
+    if (last > first && errors[last] >= errors[last - 1]) {
+      if (last - first >= static_cast<std::size_t>(minimum_fit_points)) break;
+      first = last;
+    }
+    ++last;
+  }
+  return {first, last};
+}
+
+double median_of_finest(const std::vector<double>& slopes, std::size_t first, std::size_t last) {
+  const std::size_t count = std::min<std::size_t>(3, last - first);
+  std::vector<double> finest(slopes.begin() + static_cast<std::ptrdiff_t>(last - count),
+                             slopes.begin() + static_cast<std::ptrdiff_t>(last));
+  std::sort(finest.begin(), finest.end());
+  return finest[finest.size() / 2];
+}
+
+}  // namespace
+
+OrderFit fit_order(std::span<const double> steps, std::span<const double> errors, double floor,
+                   double slope_tolerance) {
+  OrderFit fit;
+  fit.used.assign(errors.size(), 0);
+  auto [first, last] = monotone_range(errors, floor);
+  const auto give_up = [&](std::size_t points) {
+    fit.reason = fmt::format("{} of {} points are in the asymptotic range above the floor {:.2g}, expected at least {}",
+                             points, errors.size(), floor, minimum_fit_points);
+    return fit;
+  };
+  if (last - first < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - first);
+
+  std::vector<double> log_step(errors.size()), log_error(errors.size()), slope(errors.size());
+  for (std::size_t k = first; k < last; ++k) {
+    log_step[k] = std::log(steps[k]);
+    log_error[k] = std::log(errors[k]);
+  }
+  for (std::size_t k = first; k + 1 < last; ++k) {
+    slope[k] = (log_error[k] - log_error[k + 1]) / (log_step[k] - log_step[k + 1]);
+  }
+  while (last - first >= 2 && slope[last - 2] < smallest_slope) --last;
+  if (last - first < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - first);
+  double asymptotic = median_of_finest(slope, first, last - 1);
+  const auto agrees = [&](std::size_t k) { return std::abs(slope[k] - asymptotic) <= slope_tolerance; };
+  while (last - first > static_cast<std::size_t>(minimum_fit_points) && !agrees(last - 2)) {
+    --last;
+    asymptotic = median_of_finest(slope, first, last - 1);
+  }
+  std::size_t begin = last - 1;
+  while (begin > first && agrees(begin - 1)) --begin;
+  if (last - begin < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - begin);
+
+  const std::size_t n = last - begin;
+  double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, sum_squares = 0.0;
+  gsl_fit_linear(log_step.data() + begin, 1, log_error.data() + begin, 1, n, &intercept, &fit.order, &cov00, &cov01,
+                 &cov11, &sum_squares);
+  const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * std::sqrt(cov11);
+  fit.order_low = fit.order - half_width;
+  fit.order_high = fit.order + half_width;
+  fit.correlation = gsl_stats_correlation(log_step.data() + begin, 1, log_error.data() + begin, 1, n);
+  fit.points = static_cast<int>(n);
+  std::fill(fit.used.begin() + static_cast<std::ptrdiff_t>(begin), fit.used.begin() + static_cast<std::ptrdiff_t>(last),
+            char{1});
+  fit.valid = true;
+  return fit;
+}
+
+}  // namespace fw::analysis

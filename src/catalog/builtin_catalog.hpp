@@ -1,0 +1,18 @@
+#pragma once
+
+#include "catalog/methods.hpp"
+#include "catalog/problems.hpp"
+#include "study/catalog.hpp"
+
+namespace fw::catalog {
+
+/// The lists of methods and problems, as a study sees them.
+class BuiltinCatalog final : public study::Catalog {
+ public:
+  std::unique_ptr<Integrator> method(const std::string& call) const override { return make_method(call); }
+  Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
+    return find_problem(name).make(parameters);
+  }
+};
+
+}  // namespace fw::catalog

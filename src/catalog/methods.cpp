@@ -1,0 +1,130 @@
+#include "catalog/methods.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/closest_name.hpp"
+#include "core/error.hpp"
+#include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/implicit_euler.hpp"
+#include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/symplectic_euler.hpp"
+#include "integrators/tableaus.hpp"
+#include "integrators/velocity_verlet.hpp"
+#include "integrators/verlet.hpp"
+#include "oracles/sundials/cvode.hpp"
+
+namespace fw::catalog {
+
+namespace {
+
+/// A method without options.
+MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
+  return {make()->info(), {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+}
+
+/// The value of an option out of a list of names.
+template <class Value>
+Value choose(const MethodOptions& options, const std::string& name, Value fallback,
+             const std::vector<std::pair<std::string, Value>>& values) {
+  const auto option = options.find(name);
+  if (option == options.end()) return fallback;
+  std::vector<std::string> names;
+  for (const auto& [text, value] : values) {
+    if (text == option->second) return value;
+    names.push_back(text);
+  }
+  throw InputError(fmt::format("option {}: found \"{}\", expected one of {}", name, option->second, fmt::join(names, ", ")));
+}
+
+double positive_number(const MethodOptions& options, const std::string& name, double fallback) {
+  const auto option = options.find(name);
+  if (option == options.end()) return fallback;
+  double value = 0.0;
+  const char* end = option->second.data() + option->second.size();
+  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
+  if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
+  }
+  return value;
+}
+
+MethodEntry linearised_implicit_euler() {
+  using integrators::LinearisedOptions;
+  using linalg::LinearSolverKind;
+  return {integrators::make_implicit_euler_linearised({})->info(),
+          {{"linear_solver", "cg", "cg (conjugate gradients), cholesky or lu"},
+           {"linear_tolerance", "1e-10", "relative residual of cg"},
+           {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
+          [](const MethodOptions& options) {
+            LinearisedOptions chosen;
+            chosen.linear_solver.kind = choose<LinearSolverKind>(options, "linear_solver", LinearSolverKind::conjugate_gradient,
+                                               {{"cg", LinearSolverKind::conjugate_gradient},
+                                                {"cholesky", LinearSolverKind::sparse_cholesky},
+                                                {"lu", LinearSolverKind::sparse_lu}});
+            chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
+            chosen.tangent = choose<TangentModel>(options, "tangent", TangentModel::exact,
+                                    {{"exact", TangentModel::exact},
+                                     {"tensile_geometric_term", TangentModel::tensile_geometric_term},
+                                     {"psd_projection", TangentModel::psd_projection}});
+            return integrators::make_implicit_euler_linearised(chosen);
+          }};
+}
+
+std::vector<MethodEntry> make_list() {
+  std::vector<MethodEntry> list;
+  for (const integrators::ButcherTableau& tableau : integrators::tableaus()) {
+    list.push_back(plain([&tableau] { return integrators::make_explicit_runge_kutta(tableau); }));
+  }
+  list.push_back(plain(integrators::make_symplectic_euler));
+  list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
+  list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
+  list.push_back(plain(integrators::make_velocity_verlet));
+  list.push_back(plain(integrators::make_implicit_euler));
+  list.push_back(linearised_implicit_euler());
+  list.push_back(plain(oracles::make_cvode_bdf));
+  return list;
+}
+
+}  // namespace
+
+const std::vector<MethodEntry>& methods() {
+  static const std::vector<MethodEntry> list = make_list();
+  return list;
+}
+
+const MethodEntry& find_method(const std::string& name) {
+  std::vector<std::string> names;
+  for (const MethodEntry& entry : methods()) {
+    if (entry.info.name == name) return entry;
+    names.push_back(entry.info.name);
+  }
+  const auto nearest = closest_name(name, names);
+  throw InputError(fmt::format("unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
+                               nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : ""));
+}
+
+std::unique_ptr<Integrator> make_method(const std::string& text) {
+  const MethodCall call = parse_method_call(text);
+  const MethodEntry& entry = find_method(call.name);
+  for (const auto& [name, value] : call.options) {
+    const bool known = std::any_of(entry.options.begin(), entry.options.end(),
+                                   [&name = name](const OptionInfo& option) { return option.name == name; });
+    if (!known) {
+      std::vector<std::string> names;
+      for (const OptionInfo& option : entry.options) names.push_back(option.name);
+      throw InputError(names.empty() ? fmt::format("method \"{}\" takes no options, found \"{}\"", call.name, name)
+                                     : fmt::format("method \"{}\": unknown option \"{}\", expected one of {}",
+                                                   call.name, name, fmt::join(names, ", ")));
+    }
+  }
+  try {
+    return entry.make(call.options);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("method \"{}\": {}", call.name, error.what()));
+  }
+}
+
+}  // namespace fw::catalog

@@ -1,0 +1,13 @@
+#include "catalog/study_kinds.hpp"
+
+#include "study/convergence.hpp"
+#include "study/simulate.hpp"
+
+namespace fw::catalog {
+
+const std::vector<study::StudyKind>& study_kinds() {
+  static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::simulate_kind()};
+  return list;
+}
+
+}  // namespace fw::catalog

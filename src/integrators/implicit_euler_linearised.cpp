@@ -1,0 +1,84 @@
+#include "integrators/implicit_euler_linearised.hpp"
+
+#include "integrators/step_matrix.hpp"
+#include "integrators/stepper.hpp"
+
+namespace fw::integrators {
+
+namespace {
+
+class LinearisedStepper final : public Stepper {
+ public:
+  LinearisedStepper(const LinearisedOptions& options, const Ivp& ivp, Work& work)
+      : options_(options),
+        system_(*ivp.system->second_order()),
+        work_(work),
+        solver_(linalg::make_linear_solver(options.linear_solver)),
+        matrix_(system_),
+        right_hand_side_(system_.degrees_of_freedom()),
+        product_(system_.degrees_of_freedom()),
+        increment_(Vector::Zero(system_.degrees_of_freedom())),
+        zero_(Vector::Zero(system_.degrees_of_freedom())) {}
+
+  Status step(double t, double h, VectorRef y) override {
+    const Index n = increment_.size();
+    auto x = y.head(n);
+    auto v = y.tail(n);
+    const bool needs_symmetry = options_.linear_solver.kind != linalg::LinearSolverKind::sparse_lu;
+    const SparseMatrix& A = needs_symmetry ? matrix_.assemble_symmetric(t + h, x, v, h, options_.tangent)
+                                           : matrix_.assemble(t + h, x, v, h, options_.tangent);
+    ++work_.jacobian_evaluations;
+    if (Status status = solver_->factorise(A, work_); !status.ok()) return advise(std::move(status));
+
+    system_.force(t + h, x, v, right_hand_side_);
+    ++work_.rhs_evaluations;
+    system_.tangent_product(t + h, x, v, v, zero_, product_);
+    ++work_.jacobian_products;
+    right_hand_side_ = h * (right_hand_side_ + h * product_);
+    linalg::LinearSolve solve = solver_->solve(right_hand_side_, increment_, work_);
+    if (!solve.status.ok()) return advise(std::move(solve.status));
+    v += increment_;
+    x += h * v;
+    return {};
+  }
+
+ private:
+  Status advise(Status status) const {
+    if (status.code == StatusCode::matrix_indefinite && options_.tangent != TangentModel::psd_projection) {
+      status.message +=
+          "; compressed springs make the tangent stiffness indefinite (erratum E5): a smaller step, the tangent "
+          "model psd_projection, or the linear solver lu go on";
+    }
+    return status;
+  }
+
+  LinearisedOptions options_;
+  const SecondOrderSystem& system_;
+  Work& work_;
+  std::unique_ptr<linalg::LinearSolver> solver_;
+  StepMatrix matrix_;
+  Vector right_hand_side_, product_, increment_, zero_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptions& options) {
+  MethodInfo info{.name = "implicit_euler_linearised",
+                  .title = "Linearised implicit Euler (one solve)",
+                  .family = "implicit",
+                  .order = 1,
+                  .order_with_velocity_forces = 1,
+                  .stages = 1,
+                  .is_explicit = false,
+                  .is_a_stable = true,
+                  .is_l_stable = true,
+                  .needs_second_order = true,
+                  .formula = "(M - hD - h²K) (v' - v) = h (f + h K v);  x' = x + h v'",
+                  .reference = "[Zachmann 2011, S25-S31; Baraff, Witkin 1998]"};
+  return std::make_unique<FixedStepIntegrator>(
+      std::move(info), [options](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
+        return std::make_unique<LinearisedStepper>(options, ivp, work);
+      });
+}
+
+}  // namespace fw::integrators

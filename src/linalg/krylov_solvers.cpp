@@ -1,0 +1,68 @@
+#include "linalg/krylov_solvers.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+
+namespace fw::linalg {
+
+namespace {
+
+using Block = Eigen::Matrix3d;
+using BlockMap = Eigen::Map<const Block>;
+
+}  // namespace
+
+Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
+  matrix_ = A;  // the pattern is the same from the second call on: Eigen reuses the storage
+  const Index n = A.cols();
+  block_size_ = n % 3 == 0 ? 3 : 1;
+  inverse_blocks_.resize(static_cast<std::size_t>(n * block_size_));
+  ++work.factorisations;
+  for (Index first = 0; first < n; first += block_size_) {
+    Block block = Block::Identity();
+    for (Index column = 0; column < block_size_; ++column) {
+      for (SparseMatrix::InnerIterator entry(A, first + column); entry; ++entry) {
+        const Index row = entry.row() - first;
+        if (row >= 0 && row < block_size_) block(row, column) = entry.value();
+      }
+    }
+    const Eigen::LLT<Block> cholesky(block);
+    if (cholesky.info() != Eigen::Success) {
+      return {StatusCode::matrix_indefinite,
+              fmt::format("the diagonal block of row {} is not positive definite, so the matrix is not", first)};
+    }
+    const Block inverse = cholesky.solve(Block::Identity());
+    for (Index column = 0; column < block_size_; ++column) {
+      for (Index row = 0; row < block_size_; ++row) {
+        inverse_blocks_[static_cast<std::size_t>((first + column) * block_size_ + row)] = inverse(row, column);
+      }
+    }
+  }
+  return {};
+}
+
+void ConjugateGradientSolver::precondition(ConstVectorRef r, VectorRef out) const {
+  if (block_size_ == 1) {
+    out = r.cwiseProduct(ConstVectorMap(inverse_blocks_.data(), r.size()));
+    return;
+  }
+  for (Index first = 0; first < r.size(); first += 3) {
+    out.segment<3>(first).noalias() = BlockMap(inverse_blocks_.data() + 3 * first) * r.segment<3>(first);
+  }
+}
+
+LinearSolve ConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
+  const std::uint64_t limit =
+      options_.max_iterations > 0 ? options_.max_iterations : 10 * static_cast<std::uint64_t>(b.size());
+  // A is symmetric: its transpose is stored by rows, so the product gathers instead of scattering.
+  const auto apply = [this](ConstVectorRef p, VectorRef out) { out.noalias() = matrix_.transpose() * p; };
+  const auto jacobi = [this](ConstVectorRef r, VectorRef out) { precondition(r, out); };
+  LinearSolve result =
+      conjugate_gradient(apply, jacobi, b, x, options_.relative_tolerance, limit, workspace_);
+  ++work.linear_solves;
+  work.linear_iterations += result.iterations;
+  return result;
+}
+
+}  // namespace fw::linalg

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "linalg/linear_solver.hpp"
+
+namespace fw::linalg {
+
+/// A nonlinear system g(u) = 0 with its sparse derivative.
+class NewtonProblem {
+ public:
+  virtual ~NewtonProblem() = default;
+  /// out = g(u).
+  virtual void residual(ConstVectorRef u, VectorRef out) = 0;
+  /// ∂g/∂u, always with the same pattern.
+  virtual const SparseMatrix& matrix(ConstVectorRef u) = 0;
+};
+
+/// Newton's iteration with a new matrix at each iterate and a halved correction where the full one would not
+/// decrease ‖g‖₂. All work space is allocated at construction.
+class Newton {
+ public:
+  Newton(Index size, LinearSolverKind kind);
+
+  /// Solves g(u) = 0 from the initial guess `u`. Converged when a full correction is at most
+  /// 1e-12·max(‖u‖∞, scale), or has stopped falling below 1e-8 of that (rounding); `problem.residual` has then
+  /// been evaluated last at the returned `u`. Fails with newton_failed or with the linear solver's Status.
+  Status solve(NewtonProblem& problem, VectorRef u, double scale, Work& work);
+
+ private:
+  std::unique_ptr<LinearSolver> solver_;
+  Vector residual_, correction_, trial_;
+};
+
+}  // namespace fw::linalg

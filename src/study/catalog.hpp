@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "ode/integrator.hpp"
+#include "problems/problem_entry.hpp"
+
+namespace fw::study {
+
+/// Finds methods and problems by name. Implemented by catalog/, which knows every one of them; a study knows
+/// only this.
+class Catalog {
+ public:
+  virtual ~Catalog() = default;
+
+  /// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]". Throws
+  /// InputError for an unknown name (with the nearest one) or option.
+  virtual std::unique_ptr<Integrator> method(const std::string& call) const = 0;
+
+  /// The problem of that name. Throws InputError for an unknown name, parameter or value.
+  virtual Problem problem(const std::string& name, const ProblemParameters& parameters) const = 0;
+};
+
+}  // namespace fw::study

@@ -1,0 +1,43 @@
+#include "study/plan.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <set>
+
+namespace fw::study {
+
+Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog, bool quick) {
+  std::vector<std::string> names;
+  for (const StudyKind& kind : kinds) names.push_back(kind.name);
+  Plan plan;
+  plan.kind = spec.choice("kind", names);
+  plan.title = spec.string("title");
+  plan.seed = spec.integer_or("seed", 0, 0);
+  for (const StudyKind& kind : kinds) {
+    if (kind.name == plan.kind) kind.read(spec, catalog, quick, plan);
+  }
+  spec.finish();
+  std::set<std::string> ids;
+  for (const PlannedCase& planned : plan.cases) {
+    if (!ids.insert(planned.id).second) {
+      throw InputError(fmt::format("{}: the case \"{}\" appears twice; give its problem another label",
+                                   spec.source_name(), planned.id));
+    }
+  }
+  plan.spec = spec.to_toml_text();
+  return plan;
+}
+
+std::string group_name(const std::string& text) {
+  std::string name = text;
+  for (char& letter : name) {
+    const bool keeps = std::isalnum(static_cast<unsigned char>(letter)) || std::string_view("_.-:=,[]").find(letter) != std::string_view::npos;
+    if (!keeps) letter = '_';
+  }
+  return name;
+}
+
+}  // namespace fw::study

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/checked_table.hpp"
+#include "study/catalog.hpp"
+#include "study/result.hpp"
+
+namespace fw::study {
+
+/// What a case may ask its surroundings while it runs.
+struct RunContext {
+  /// Set by the user's interrupt; a case then stops and is not kept.
+  const std::atomic<bool>* interrupted = nullptr;
+  /// Directory of certified references that were computed before; empty: none are kept.
+  std::filesystem::path reference_cache;
+
+  bool is_interrupted() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
+};
+
+/// Thrown inside a case when the user has interrupted it.
+struct Interrupted {};
+
+/// One case of a study: what identifies it and how to run it. `run` is a pure function of the plan (timings
+/// aside); a numerical failure is a verdict of its result, not an exception.
+struct PlannedCase {
+  std::string id;        ///< unique in the study, usable as a group name
+  std::string identity;  ///< the resolved case as text: equal text, equal result
+  std::function<CaseResult(const RunContext&)> run;
+};
+
+/// A study that has been read and checked completely, ready to run.
+struct Plan {
+  std::string kind;
+  std::string title;
+  std::string spec;  ///< the resolved input as TOML text
+  std::int64_t seed = 0;
+  std::vector<PlannedCase> cases;
+};
+
+/// One kind of study: reads its specification into a plan. `quick` applies the study's own [quick] section.
+struct StudyKind {
+  std::string name;
+  std::string title;
+  std::string description;
+  std::function<void(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan)> read;
+};
+
+/// Reads a study file of one of `kinds`; everything is checked before anything runs. Throws InputError.
+Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog, bool quick);
+
+/// A name that is fit for a group: letters, digits, and any of _.-:=,[] stay, everything else becomes '_'.
+std::string group_name(const std::string& text);
+
+}  // namespace fw::study

@@ -1,0 +1,267 @@
+"""The plot scripts, on synthetic result files: what stands in the pictures, and how bad files are refused."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parent.parent.parent / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import plot_style  # noqa: E402,F401
+import h5py  # noqa: E402
+import matplotlib.colors as colors  # noqa: E402
+import numpy  # noqa: E402
+import plot_convergence  # noqa: E402
+import plot_slope_field  # noqa: E402
+import plot_spiral  # noqa: E402
+import plot_trajectory  # noqa: E402
+import synthetic_results  # noqa: E402
+from result_file import ResultError, ResultFile  # noqa: E402
+
+
+class PlotTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="feder werk ")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.addCleanup(plot_style.plt.close, "all")
+
+    def write(self, kind, **options):
+        path = self.folder / f"{kind}.h5"
+        synthetic_results.ALL[kind](path, **options)
+        return path
+
+    def draw(self, module, path):
+        with ResultFile(path) as result:
+            return module.draw(result)
+
+    def script(self, name, *arguments):
+        return subprocess.run([sys.executable, SCRIPTS / name, *arguments], cwd="/", text=True, capture_output=True,
+                              check=False)
+
+
+def texts_of_legend(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+class EveryPlot(PlotTest):
+    def test_is_written_as_png_and_pdf_beside_its_file(self):
+        for kind in synthetic_results.ALL:
+            with self.subTest(kind):
+                answer = self.script(f"plot_{kind}.py", self.write(kind))
+                self.assertEqual(answer.returncode, 0, answer.stderr)
+                for extension, magic in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
+                    self.assertTrue((self.folder / f"{kind}.{extension}").read_bytes().startswith(magic))
+
+    def test_is_chosen_by_the_kind_of_the_file(self):
+        files = [self.write(kind) for kind in synthetic_results.ALL]
+        answer = self.script("plot_results.py", *files, "-o", self.folder / "plots")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(sorted(path.name for path in (self.folder / "plots").glob("*.png")),
+                         sorted(f"{kind}.png" for kind in synthetic_results.ALL))
+
+    def test_depends_on_the_file_alone(self):
+        path = self.write("spiral")
+        pictures = []
+        for folder in ("first", "second"):
+            self.script("plot_spiral.py", path, "-o", self.folder / folder)
+            pictures.append([(self.folder / folder / f"spiral.{extension}").read_bytes()
+                             for extension in ("png", "pdf")])
+        self.assertEqual(pictures[0], pictures[1])
+
+    def test_names_study_commit_and_date_in_its_footer(self):
+        for kind, module in (("convergence", plot_convergence), ("trajectory", plot_trajectory),
+                             ("slope_field", plot_slope_field), ("spiral", plot_spiral)):
+            with self.subTest(kind):
+                figure, = self.draw(module, self.write(kind))
+                footer = [text.get_text() for text in figure.texts if "federwerk" in text.get_text()]
+                self.assertEqual(len(footer), 1)
+                for part in (figure._suptitle.get_text(), "0123456789", "uncommitted changes", "2026-01-31"):
+                    self.assertIn(part, footer[0])
+
+    def test_says_in_the_footer_that_a_result_is_incomplete(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            file.attrs["status"] = "incomplete"
+        figure, = self.draw(plot_convergence, path)
+        self.assertTrue(any("INCOMPLETE" in text.get_text() for text in figure.texts))
+
+    def test_has_units_on_every_axis_that_has_a_dimension(self):
+        figure, = self.draw(plot_convergence, self.write("convergence"))
+        self.assertEqual(figure.axes[0].get_xlabel(), "step h [s]")
+        self.assertEqual(figure.axes[0].get_ylabel(), "position error [m]")
+        self.assertEqual(figure.axes[1].get_ylabel(), "velocity error [m/s]")
+        figure, = self.draw(plot_trajectory, self.write("trajectory"))
+        self.assertEqual(sorted(axes.get_ylabel() for axes in figure.axes),
+                         ["L [kg·m²/s]", "energy [J]", "p [kg·m/s]", "z [m]"])
+
+
+class Refusals(PlotTest):
+    def test_a_file_of_another_kind_is_refused_by_name(self):
+        answer = self.script("plot_convergence.py", self.write("trajectory"))
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("trajectory.h5", answer.stderr)
+        self.assertIn('found kind "trajectory", expected "convergence"', answer.stderr)
+
+    def test_a_missing_dataset_is_named(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            del file["cases/henon_heiles-rk4/used"]
+        answer = self.script("plot_convergence.py", path)
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("found no /cases/henon_heiles-rk4/used", answer.stderr)
+
+    def test_files_that_are_no_results_are_refused(self):
+        (self.folder / "text.h5").write_text("no HDF5")
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["x"] = 1
+        for name in ("text.h5", "foreign.h5", "absent.h5"):
+            with self.subTest(name):
+                answer = self.script("plot_results.py", self.folder / name)
+                self.assertEqual(answer.returncode, 2)
+                self.assertIn(name, answer.stderr)
+                self.assertNotIn("Traceback", answer.stderr)
+
+    def test_a_refused_file_leaves_no_picture(self):
+        self.script("plot_convergence.py", self.write("trajectory"))
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["trajectory.h5"])
+
+    def test_columns_of_unequal_length_are_refused(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            del file["summary/order"]
+            file["summary/order"] = [1.0]
+        with ResultFile(path) as result, self.assertRaisesRegex(ResultError, "lengths"):
+            result.summary()
+
+
+class Convergence(PlotTest):
+    def test_shows_the_fitted_order_with_its_interval_and_the_verdict(self):
+        figure, = self.draw(plot_convergence, self.write("convergence"))
+        entries = texts_of_legend(figure.axes[3])
+        self.assertIn("rk4: order 4.00 [3.98, 4.01]", entries)
+        self.assertIn("midpoint: order 2.00 [1.98, 2.01], fails", entries)
+        self.assertIn("sundials:cvode_bdf: no order fitted, not applicable", entries)
+
+    def test_draws_points_outside_the_fit_hollow_and_no_others(self):
+        path = self.write("convergence")
+        figure, = self.draw(plot_convergence, path)
+        with h5py.File(path) as file:
+            case = file["cases/henon_heiles-rk4"]
+            step, error, used = case["step"][:], case["error_position"][:], case["used"][:].astype(bool)
+        color = plot_style.look(list(synthetic_results.METHODS).index("rk4"))["color"]
+        markers = [line for line in figure.axes[0].lines
+                   if line.get_linestyle() == "None" and line.get_color() == color]
+        full = [line for line in markers if colors.same_color(line.get_markerfacecolor(), color)]
+        hollow = [line for line in markers if colors.same_color(line.get_markerfacecolor(), "white")]
+        self.assertGreater(numpy.count_nonzero(used), 0)
+        self.assertGreater(numpy.count_nonzero(~used), 0)
+        numpy.testing.assert_array_equal(full[0].get_xydata(), numpy.stack([step, error], axis=1)[used])
+        numpy.testing.assert_array_equal(hollow[0].get_xydata(), numpy.stack([step, error], axis=1)[~used])
+
+    def test_reference_lines_have_the_predicted_slopes(self):
+        figure, = self.draw(plot_convergence, self.write("convergence"))
+        slopes = []
+        for line in figure.axes[0].lines:
+            if line.is_dashed():
+                (x0, y0), (x1, y1) = line.get_xydata()
+                slopes.append(numpy.log(y1 / y0) / numpy.log(x1 / x0))
+        numpy.testing.assert_allclose(sorted(slopes), [1, 2, 4], rtol=1e-12)
+
+    def test_says_which_points_a_logarithmic_axis_cannot_show(self):
+        figure, = self.draw(plot_convergence, self.write("convergence"))
+        notes = [text.get_text() for text in figure.axes[0].texts if "not shown" in text.get_text()]
+        self.assertEqual(notes, ["1 not shown: zero or not finite"])  # explicit Euler's infinite error
+
+    def test_many_problems_go_to_several_figures(self):
+        path = self.write("convergence", problems=[f"problem_{i}" for i in range(7)])
+        self.assertEqual(len(self.draw(plot_convergence, path)), 3)
+        answer = self.script("plot_convergence.py", path)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(len(list(self.folder.glob("convergence-[123].png"))), 3)
+
+    def test_panels_go_by_method_on_request(self):
+        with ResultFile(self.write("convergence")) as result:
+            figures = plot_convergence.draw(result, by="method")
+        self.assertEqual(figures[0].axes[0].get_title(loc="left"), "explicit_euler")
+        self.assertTrue(texts_of_legend(figures[0].axes[1])[0].startswith("henon_heiles: order 1.00"))
+
+    def test_a_first_order_system_has_one_panel_with_its_error(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            for case in file["cases"].values():
+                del case["error_position"], case["error_velocity"]
+        figure, = self.draw(plot_convergence, path)
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["error", "error"])  # one per problem
+
+
+class Trajectory(PlotTest):
+    def test_does_not_draw_rounding_as_waves(self):
+        path = self.write("trajectory")
+        with h5py.File(path, "r+") as file:
+            file["trajectory/linear_momentum"][:, 0] = 0
+        figure, = self.draw(plot_trajectory, path)
+        panel = next(axes for axes in figure.axes if axes.get_ylabel().startswith("p "))
+        low, high = panel.get_ylim()
+        self.assertGreater(high - low, 1e-7)  # the momenta themselves vary by 1e-14
+
+    def test_a_real_drift_of_momentum_fills_the_panel(self):
+        path = self.write("trajectory")
+        with h5py.File(path, "r+") as file:
+            file["trajectory/linear_momentum"][:, 0] = numpy.linspace(0, 0.05, 400)
+        figure, = self.draw(plot_trajectory, path)
+        low, high = next(axes for axes in figure.axes if axes.get_ylabel().startswith("p ")).get_ylim()
+        self.assertLess(high - low, 0.06)
+
+    def test_a_run_that_stopped_says_so(self):
+        figure, = self.draw(plot_trajectory, self.write("trajectory", status="blow_up"))
+        self.assertIn("blow_up", figure._suptitle.get_text())
+
+    def test_many_particles_have_a_choice_of_paths_that_is_announced(self):
+        figure, = self.draw(plot_trajectory, self.write("trajectory", particles=60))
+        self.assertIn("paths (12 of 60), seen along y", [axes.get_title(loc="left") for axes in figure.axes])
+
+
+class SimulatedCases(PlotTest):
+    def test_every_step_has_a_curve_with_its_own_points(self):
+        path = self.write("slope_field")
+        figure, = self.draw(plot_slope_field, path)
+        self.assertEqual([axes.get_title(loc="left") for axes in figure.axes],
+                         ["explicit_euler: decay", "implicit_euler: decay"])
+        curve = next(line for line in figure.axes[0].lines if line.get_label() == "h = 0.5 s")
+        with h5py.File(path) as file:
+            case = next(case for case in file["cases"].values()
+                        if case.attrs.get("step") == 0.5 and case.attrs["method"] == "explicit_euler")
+            numpy.testing.assert_array_equal(curve.get_xdata(), case["time"][:])
+            numpy.testing.assert_array_equal(curve.get_ydata(), case["state"][:, 0])
+
+    def test_a_curve_that_leaves_the_picture_says_so_and_no_other(self):
+        figure, = self.draw(plot_slope_field, self.write("slope_field"))
+        entries = texts_of_legend(figure.axes[0])
+        self.assertEqual([entry for entry in entries if "leaves" in entry], ["h = 2.2 s\n(leaves the picture)"])
+
+    def test_the_state_plane_has_equal_axes(self):
+        figure, = self.draw(plot_spiral, self.write("spiral"))
+        self.assertEqual(figure.axes[0].get_aspect(), 1.0)
+
+    def test_facts_may_be_columns_in_place_of_attributes(self):
+        path = self.write("spiral")
+        with h5py.File(path, "r+") as file:
+            for name, case in file["cases"].items():
+                if name != "vector_field":
+                    for fact in ("problem", "method", "step"):
+                        case[fact] = [case.attrs[fact]]
+                        del case.attrs[fact]
+        figure, = self.draw(plot_spiral, path)
+        self.assertIn("h = 0.02 s", texts_of_legend(figure.axes[0]))
+
+    def test_a_state_of_another_size_is_refused(self):
+        with self.assertRaisesRegex(ResultError, "2 components, expected 1"):
+            self.draw(plot_slope_field, self.write("spiral"))
+
+
+if __name__ == "__main__":
+    unittest.main()

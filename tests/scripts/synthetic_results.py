@@ -1,0 +1,149 @@
+"""Writes result files as docs/results_schema.md describes them, with made-up numbers, to draw pictures of.
+
+Run by itself it fills a folder: synthetic_results.py DIR
+"""
+
+import pathlib
+import sys
+
+import h5py
+import numpy
+
+
+def put(group, name, values, unit="1"):
+    values = list(values) if isinstance(values, (list, tuple)) else values
+    if isinstance(values, list) and values and isinstance(values[0], str):
+        values = numpy.array(values, dtype=h5py.string_dtype("utf-8"))
+    dataset = group.create_dataset(name, data=values)
+    dataset.attrs["unit"] = unit
+    return dataset
+
+
+def new_file(path, kind, title):
+    file = h5py.File(path, "w")
+    for name, value in {"format": "federwerk", "format_version": 1, "kind": kind, "title": title,
+                        "created": "2026-01-31T12:34:56Z", "git_commit": "0123456789" * 4, "git_dirty": True,
+                        "status": "complete"}.items():
+        file.attrs[name] = value
+    return file
+
+
+METHODS = {"explicit_euler": 1, "symplectic_euler": 1, "midpoint": 2, "velocity_verlet": 2, "rk4": 4,
+           "sundials:cvode_bdf": 0}
+
+
+def convergence(path, problems=("henon_heiles", "single_spring_with_damper")):
+    """Errors C·h^p with a rounding floor; the points on the floor are not used. One error is not finite."""
+    step = 0.1 * 0.5 ** numpy.arange(9)
+    rows = []
+    with new_file(path, "convergence", "Convergence on smooth problems") as file:
+        for problem in problems:
+            for index, (method, order) in enumerate(METHODS.items()):
+                case = file.create_group(f"cases/{problem}-{method}")
+                power = order or 1.5
+                exact = 3.0 * (1 + index) * step ** power
+                floor = 4e-13 / step
+                used = (exact > 10 * floor) & (step < 0.09) & (order > 0)
+                position = exact + floor * (1 + 0.5 * numpy.cos(40 * step))
+                if index == 0:
+                    position[0] = numpy.inf
+                put(case, "step", step, "s")
+                put(case, "error_position", position, "m")
+                put(case, "error_velocity", 2.5 * position, "m/s")
+                put(case, "error", position)
+                put(case, "used", used.astype(numpy.int64))
+                verdict = "holds" if order else "not applicable"
+                if method == "midpoint" and problem != problems[0]:
+                    verdict = "fails"
+                rows.append((problem, method, float(order), order - 0.003 if order else numpy.nan, order - 0.02,
+                             order + 0.014, verdict))
+        summary = file.create_group("summary")
+        for name, column in zip(("problem", "method", "expected_order", "order", "order_low", "order_high",
+                                 "verdict"), zip(*rows)):
+            put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
+
+
+def trajectory(path, particles=4, status="success", frames=400):
+    """A free chain that swings and turns; its momenta are constant to rounding."""
+    time = numpy.linspace(0, 10, frames)
+    random = numpy.random.default_rng(20111208)
+    row = numpy.arange(particles)
+    position = numpy.zeros((frames, particles, 3))
+    velocity = numpy.zeros_like(position)
+    centre = row - row.mean()
+    for i in row:
+        phase = 0.5 * time
+        stretch = 1 + 0.15 * numpy.sin(3 * time + 0)
+        position[:, i, 0] = centre[i] * stretch * numpy.cos(phase) + 0.05 * time
+        position[:, i, 2] = centre[i] * stretch * numpy.sin(phase)
+        velocity[:, i] = numpy.gradient(position[:, i], time, axis=0)
+    with new_file(path, "trajectory", "A free chain of springs") as file:
+        group = file.create_group("trajectory")
+        put(group, "time", time, "s")
+        put(group, "position", position, "m")
+        put(group, "velocity", velocity, "m/s")
+        kinetic = 2 + numpy.cos(6 * time)
+        put(group, "kinetic_energy", kinetic, "J")
+        put(group, "potential_energy", 3 - kinetic + 0.01 * time, "J")
+        put(group, "linear_momentum", 1e-14 * random.standard_normal((frames, 3)) + [0.2, 0, 0], "kg*m/s")
+        put(group, "angular_momentum", 1e-13 * random.standard_normal((frames, 3)) + [0, -2.5, 0], "kg*m^2/s")
+        group.attrs["solver_status"] = status
+        system = file.create_group("system")
+        put(system, "mass", numpy.ones(particles), "kg")
+        put(system, "springs", numpy.stack([row[:-1], row[1:]], axis=1).astype(numpy.int64))
+
+
+def simulate(path, title, problem, rhs, start, exact, steps, end, field_axes, methods=("explicit_euler",)):
+    """Explicit or implicit Euler's solutions of a linear equation, the exact one and the vector field."""
+    size = len(start)
+    with new_file(path, "simulate", title) as file:
+        rows = []
+        for method in methods:
+            matrix = numpy.stack([rhs(0.0, unit) for unit in numpy.eye(size)], axis=1)
+            for number, step in enumerate(steps):
+                count = int(end / step + 1e-9)
+                growth = numpy.eye(size) + step * matrix if method == "explicit_euler" else \
+                    numpy.linalg.inv(numpy.eye(size) - step * matrix)
+                states = [numpy.array(start, dtype=float)]
+                for _ in range(count):
+                    states.append(growth @ states[-1])
+                case = file.create_group(f"cases/{problem}-{method}-{number}")
+                case.attrs["problem"], case.attrs["method"], case.attrs["step"] = problem, method, step
+                put(case, "time", step * numpy.arange(count + 1), "s")
+                put(case, "state", numpy.array(states))
+                fine = numpy.linspace(0, end, 400)
+                put(case, "exact_time", fine, "s")
+                put(case, "exact_state", exact(fine))
+                rows.append((problem, method, step, end, "success", "not applicable", ""))
+        field = file.create_group("cases/vector_field")
+        grid = [axis.ravel() for axis in numpy.meshgrid(*field_axes, indexing="ij")]
+        times = grid[0] if size == 1 else numpy.zeros_like(grid[0])
+        states = numpy.stack(grid[1:] if size == 1 else grid, axis=1)
+        put(field, "field_t", times, "s")
+        put(field, "field_y", states)
+        put(field, "field_dydt", numpy.array([rhs(t, y) for t, y in zip(times, states)]))
+        summary = file.create_group("summary")
+        for name, column in zip(("problem", "method", "step", "end_time", "status", "verdict", "reason"), zip(*rows)):
+            put(summary, name, list(column))
+
+
+def slope_field(path):
+    simulate(path, "ẋ = −x with explicit and implicit Euler", "decay", lambda t, y: -y, [1.0],
+             lambda t: numpy.exp(-t)[:, None], [0.5, 1.0, 1.5, 2.0, 2.2], 8.0,
+             [numpy.linspace(0, 8, 25), numpy.linspace(-1.5, 1.5, 17)], ("explicit_euler", "implicit_euler"))
+
+
+def spiral(path):
+    simulate(path, "ẋ = (−x₂, x₁): circles become spirals", "circle", lambda t, y: numpy.array([-y[1], y[0]]),
+             [1.0, 0.0], lambda t: numpy.stack([numpy.cos(t), numpy.sin(t)], axis=1), [0.5, 0.2, 0.1, 0.02],
+             4 * numpy.pi, [numpy.linspace(-3, 3, 19)] * 2)
+
+
+ALL = {"convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral}
+
+if __name__ == "__main__":
+    folder = pathlib.Path(sys.argv[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, write in ALL.items():
+        write(folder / f"{name}.h5")
+    trajectory(folder / "stopped.h5", particles=60, status="blow_up")
