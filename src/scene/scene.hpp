@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/types.hpp"
@@ -18,6 +20,14 @@ struct Scene {
   std::string resolved_toml;          ///< the input as TOML text with every default filled in
   std::vector<std::string> warnings;  ///< what is legal but has no effect, one sentence each
 };
+
+/// Reads a scene file (TOML; docs/scene_format.md). InputError with file, line, key and index for everything
+/// that is unknown, missing, of the wrong type, size or sign; nothing is ignored silently.
+Scene read_scene(const std::filesystem::path& path);
+
+/// The same for a text; `name` stands for the file in messages. The `resolved_toml` of a scene gives that
+/// scene again, bit for bit.
+Scene parse_scene(std::string_view text, std::string name);
 
 /// y = (x, v), 6n entries.
 Vector initial_state(const Scene& scene);
