@@ -80,6 +80,10 @@ bool CheckedTable::has(std::string_view key) const {
   return node && node->source().begin.line > 0;  // an entry without a line is a default
 }
 
+bool CheckedTable::is_table(std::string_view key) const {
+  return has(key) && section_->table->get(key)->is_table();
+}
+
 double CheckedTable::number(std::string_view key, NumberRule rule) const {
   return section_->number_of(section_->require(key, "a number"), {key}, rule);
 }
@@ -199,6 +203,10 @@ void CheckedTable::fail(std::string_view key, const std::string& message) const 
 void CheckedTable::fail(std::string_view key, std::initializer_list<std::size_t> indices,
                         const std::string& message) const {
   throw InputError(where(key, indices) + ": " + message);
+}
+
+void CheckedTable::fail_missing(std::string_view key, const std::string& expected) const {
+  section_->fail_missing(key, expected);
 }
 
 std::string CheckedTable::to_toml_text() const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/vec3.hpp"
@@ -39,6 +40,8 @@ class CheckedTable {
   std::vector<std::string> keys() const;
   /// Whether the file gives the key. Counts as asking for it: the key becomes a candidate for "did you mean".
   bool has(std::string_view key) const;
+  /// Whether the file gives the key as a table, for keys that may also be plain values.
+  bool is_table(std::string_view key) const;
 
   double number(std::string_view key, NumberRule rule = NumberRule::any) const;
   double number_or(std::string_view key, double value, NumberRule rule = NumberRule::any) const;
@@ -86,6 +89,11 @@ class CheckedTable {
   std::vector<std::array<int, 2>> index_pairs(std::string_view key, std::size_t count,
                                               std::string_view what) const;
 
+  /// Such indices and the allowed names, in any mixture: `5`, `"corners"` or `["left_edge", 5]`.
+  std::vector<std::variant<int, std::string>> indices_or_names(std::string_view key, std::size_t count,
+                                                               std::string_view what,
+                                                               const std::vector<std::string>& names) const;
+
   /// `count` numbers, given as one number for all or as a list with one per `what` ("spring").
   std::vector<double> number_or_list(std::string_view key, std::size_t count, std::string_view what,
                                      NumberRule rule = NumberRule::any) const;
@@ -114,6 +122,9 @@ class CheckedTable {
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
   [[noreturn]] void fail(std::string_view key, std::initializer_list<std::size_t> indices,
                          const std::string& message) const;
+
+  /// Throws InputError for an absent key, or for a given key that is probably its misspelling.
+  [[noreturn]] void fail_missing(std::string_view key, const std::string& expected) const;
 
   /// This table as TOML text with the defaults filled in, sorted by key. Numbers read back to the same
   /// double.

@@ -101,6 +101,20 @@ std::vector<std::array<int, 2>> CheckedTable::index_pairs(std::string_view key, 
   });
 }
 
+std::vector<std::variant<int, std::string>> CheckedTable::indices_or_names(
+    std::string_view key, std::size_t count, std::string_view what,
+    const std::vector<std::string>& names) const {
+  using Entry = std::variant<int, std::string>;
+  const std::string expected = fmt::format("the index of a {} or a name, or an array of these", what);
+  const auto read = [&](const toml::node& node, const EntryPlace& place) -> Entry {
+    if (node.is_string()) return section_->choice_of(node, place, names);
+    return section_->index_of(node, place, count, what);
+  };
+  const auto& node = section_->require(key, expected);
+  if (node.is_string() || node.is_integer()) return {read(node, {key})};
+  return read_all<Entry>(section_->array_of(node, {key}, expected), {key}, read);
+}
+
 std::vector<double> CheckedTable::number_or_list(std::string_view key, std::size_t count,
                                                  std::string_view what, NumberRule rule) const {
   const std::string expected =

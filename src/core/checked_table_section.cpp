@@ -60,11 +60,20 @@ toml::node* CheckedTable::Section::find(std::string_view key) const {
 
 toml::node& CheckedTable::Section::require(std::string_view key, std::string_view expected) const {
   if (toml::node* node = find(key)) return *node;
-  // A misspelt key is the likeliest reason.
+  fail_missing(key, expected);
+}
+
+void CheckedTable::Section::fail_missing(std::string_view key, std::string_view expected) const {
+  // A misspelt key is the likeliest reason: a given key that nobody knows, close to a known one that is not
+  // given.
   const auto& known = document->asked[table];
+  std::vector<std::string> absent;
+  for (const std::string& name : known) {
+    if (!table->contains(name)) absent.push_back(name);
+  }
   for (const auto& [given, node] : *table) {
     if (std::find(known.begin(), known.end(), given.str()) != known.end()) continue;
-    if (closest_name(given.str(), {std::string(key)})) {
+    if (closest_name(given.str(), absent)) {
       throw InputError(fmt::format("{}:{}: {}", document->name, given.source().begin.line,
                                    unknown_key_message(given, node)));
     }

@@ -40,6 +40,7 @@ struct CheckedTable::Section {
   toml::node* find(std::string_view key) const;
   /// The same for a key that has to be there.
   toml::node& require(std::string_view key, std::string_view expected) const;
+  [[noreturn]] void fail_missing(std::string_view key, std::string_view expected) const;
   /// Adds an entry that the file does not give.
   template <class Value>
   void add_default(std::string_view key, Value&& value) const {

@@ -15,6 +15,7 @@ std::string_view to_string(StatusCode code) {
     case StatusCode::matrix_indefinite: return "matrix_indefinite";
     case StatusCode::non_finite: return "non_finite";
     case StatusCode::blow_up: return "blow_up";
+    case StatusCode::accuracy_not_reached: return "accuracy_not_reached";
     case StatusCode::library_failure: return "library_failure";
   }
   return "unknown";

@@ -18,6 +18,7 @@ enum class StatusCode {
   matrix_indefinite,      ///< conjugate gradients or Cholesky met pᵀAp ≤ 0
   non_finite,             ///< the state became NaN or infinite
   blow_up,                ///< the state grew beyond every physical size
+  accuracy_not_reached,   ///< the run ended, but its measured error is above what was asked for
   library_failure,        ///< a foreign solver gave up; the message carries its own reason
 };
 

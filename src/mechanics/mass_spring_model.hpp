@@ -58,11 +58,11 @@ struct Obstacle {
 
 /// The parameters of a mass-spring system [Zachmann 2011, S5-S9, S37]; the state is kept apart.
 struct MassSpringModel {
-  std::vector<double> mass;        ///< one per particle, > 0 [kg]
-  std::vector<int> fixed;          ///< particles that never move
+  std::vector<double> mass;  ///< one per particle, > 0 [kg]
+  std::vector<int> fixed;    ///< particles that never move
   Springs springs;
-  Vec3<double> gravity{};          ///< [m/s²]
-  double drag = 0.0;               ///< force −drag·v on every particle [kg/s]
+  Vec3<double> gravity{};  ///< [m/s²]
+  double drag = 0.0;       ///< force −drag·v on every particle [kg/s]
   std::vector<Anchor> anchors;
   std::vector<Obstacle> obstacles;
 };

@@ -3,7 +3,9 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 
+#include "mechanics/block_pattern.hpp"
 #include "mechanics/mass_spring_model.hpp"
 #include "ode/ode_system.hpp"
 
@@ -12,7 +14,7 @@ namespace fw::mechanics {
 /// Energies of a state [J].
 struct Energies {
   double kinetic = 0.0;        ///< ½ Σ m v²
-  double elastic = 0.0;        ///< springs and anchors
+  double elastic = 0.0;        ///< springs and anchors; defined at L = 0 too
   double gravitational = 0.0;  ///< −Σ m g·x
   double obstacle = 0.0;       ///< Σ ½ k δ²
   double potential() const { return elastic + gravitational + obstacle; }
@@ -21,6 +23,11 @@ struct Energies {
 
 /// A damped mass-spring system as a first-order system y = (x, v), particle i at 3i, 3i+1, 3i+2 of each half
 /// [Zachmann 2011, S5-S9].
+///
+/// The forces are those of `mass_spring_force`, the matrices are assembled from `visit_tangents`. A fixed
+/// particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero in the
+/// state, so that it holds still in dampers and energies as well. Outputs may not alias inputs. Evaluations
+/// allocate nothing but the pattern, which is made on first use of a matrix and shared by all threads.
 class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
  public:
   /// Checks sizes, index ranges and signs of the parameters; throws InputError that names the entry.
@@ -36,6 +43,7 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   void rhs(const Float128& t, std::span<const Float128> y, std::span<Float128> dydt) const override;
   void rhs(double t, std::span<const Complex> y, std::span<Complex> dydt) const override;
   SparseMatrix jacobian_pattern() const override;
+  /// Throws InputError if `J` is not of `jacobian_pattern()`'s size. The tangent is the exact one.
   void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override;
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override;
   const SecondOrderSystem* second_order() const override { return this; }
@@ -47,6 +55,9 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   ForceClass force_class() const override { return force_class_; }
   void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
   SparseMatrix tangent_pattern() const override;
+  /// `model` acts per element: see `spring_tangent` and `obstacle_tangent`. Under `psd_projection` −K is
+  /// symmetric positive semi-definite on the free degrees of freedom (a fixed row is zeroed, its column is
+  /// not). Throws InputError if `K` is not of `tangent_pattern()`'s size; so does `damping`.
   void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
                  SparseMatrix& K) const override;
   void damping(double t, ConstVectorRef q, ConstVectorRef v, SparseMatrix& D) const override;
@@ -59,20 +70,32 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   Vec3<double> linear_momentum(ConstVectorRef v) const;
   /// Σ x × m v about the origin [kg·m²/s].
   Vec3<double> angular_momentum(ConstVectorRef q, ConstVectorRef v) const;
-  /// Power that dampers, drag, anchors' and obstacles' damping take out of the system [W], ≥ 0.
+  /// Power that dampers, drag, anchors' and obstacles' damping take out of the system [W], ≥ 0, so that
+  /// d(kinetic + potential)/dt = −dissipated_power. A contact whose force is clamped to zero loses its stored
+  /// energy: see `obstacle_dissipated_power`.
   double dissipated_power(ConstVectorRef q, ConstVectorRef v) const;
 
   /// How often a spring of length zero (direction undefined, force defined as zero) was met in an evaluation
-  /// since the system was made.
+  /// of forces, tangents or dissipated power since the system was made; one evaluation counts each such
+  /// spring once.
   std::uint64_t degenerate_spring_evaluations() const { return degenerate_.load(std::memory_order_relaxed); }
 
  private:
-  struct Layout;  ///< positions of each spring's blocks in the matrices, made once on first use
+  /// Positions of each spring's blocks in the matrices, made once on first use.
+  const BlockPattern& pattern() const;
+  void count_degenerate(std::uint64_t springs) const {
+    if (springs > 0) degenerate_.fetch_add(springs, std::memory_order_relaxed);
+  }
+  template <class Scalar>
+  void evaluate_rhs(const Scalar* y, Scalar* dydt) const;
+  void require_tangent(const SparseMatrix& matrix, const char* name) const;
 
   MassSpringModel model_;
   Vector mass_;              ///< 3n, model_.mass repeated
   std::vector<char> fixed_;  ///< 3n
   ForceClass force_class_;
+  mutable std::once_flag pattern_once_;
+  mutable std::unique_ptr<const BlockPattern> pattern_;
   mutable std::atomic<std::uint64_t> degenerate_{0};
 };
 

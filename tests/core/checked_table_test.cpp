@@ -67,6 +67,23 @@ each = [1, 2]
   EXPECT_NO_THROW(t.finish());
 }
 
+TEST(CheckedTable, ReadsIndicesAndNamesInAnyMixture) {
+  const auto t = parse("a = 1\nb = 'all'\nc = ['all', 0]\nd = []\n");
+  using Entry = std::variant<int, std::string>;
+  EXPECT_THAT(t.indices_or_names("a", 2, "particle", {"all"}), ElementsAre(Entry(1)));
+  EXPECT_THAT(t.indices_or_names("b", 2, "particle", {"all"}), ElementsAre(Entry("all")));
+  EXPECT_THAT(t.indices_or_names("c", 2, "particle", {"all"}), ElementsAre(Entry("all"), Entry(0)));
+  EXPECT_TRUE(t.indices_or_names("d", 2, "particle", {"all"}).empty());
+}
+
+TEST(CheckedTable, TellsTablesFromValues) {
+  const auto t = parse("a = { x = 1 }\nb = 2\n[c]\n");
+  EXPECT_TRUE(t.is_table("a"));
+  EXPECT_FALSE(t.is_table("b"));
+  EXPECT_TRUE(t.is_table("c"));
+  EXPECT_FALSE(t.is_table("d"));
+}
+
 TEST(CheckedTable, UsesDefaultsOnlyForAbsentKeys) {
   const auto t = parse("x = 5\nn = 3\nb = false\ns = 'q'\nv = [1, 1, 1]\nl = [9]\nw = ['z']\n");
   EXPECT_EQ(t.number_or("x", 1.0), 5.0);
@@ -169,6 +186,13 @@ TEST(CheckedTable, NamesFileLineKeyIndexFoundAndExpected) {
        "a.toml:1: k: found -1, expected a finite number >= 0"},
       {"k = [1, -1]", [](T t) { t.number_or_list_or("k", 0, 2, "spring", NumberRule::nonnegative); },
        "a.toml:1: k[1]: found -1, expected a finite number >= 0"},
+      {"k = 1.5", [](T t) { t.indices_or_names("k", 3, "particle", {"all"}); },
+       "a.toml:1: k: found 1.5, expected the index of a particle or a name, or an array of these"},
+      {"k = [0, 'al']", [](T t) { t.indices_or_names("k", 3, "particle", {"all"}); },
+       "a.toml:1: k[1]: found the string \"al\", expected \"all\"; did you mean \"all\"?"},
+      {"k = 3", [](T t) { t.indices_or_names("k", 3, "particle", {"all"}); },
+       "a.toml:1: k: found 3, expected the index of a particle, an integer from 0 to 2"},
+      {"b = 1", [](T t) { t.fail_missing("a", "an a"); }, "a.toml: missing key \"a\", expected an a"},
       {"s = 1", [](T t) { t.table("s"); }, "a.toml:1: s: found 1, expected a section [s]"},
       {"[[s]]\n", [](T t) { t.table_or_empty("s"); },
        "a.toml:1: s: found an array of tables, expected a section [s]"},

@@ -1,0 +1,164 @@
+#include "store/case_groups.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string_view>
+
+#include "store/attribute.hpp"
+#include "store/dataset.hpp"
+
+namespace fw::store {
+
+namespace {
+
+using study::CaseResult;
+using study::Column;
+using study::SummaryCell;
+using study::Verdict;
+
+void check_name(const std::string& name, const std::string& where) {
+  if (name.empty() || name == "." || name == ".." ||
+      name.find_first_of(std::string_view("/\0", 2)) != name.npos) {
+    throw InputError(fmt::format("{}: \"{}\" cannot be a name in a result file", where, name));
+  }
+}
+
+Shape checked_shape(const Column& column, const std::string& where) {
+  const std::size_t count = std::visit([](const auto& values) { return values.size(); }, column.values);
+  if (column.shape.empty()) return {count};
+  std::uint64_t product = 1;
+  for (const std::uint64_t extent : column.shape) product *= extent;
+  if (product != count) {
+    throw InputError(fmt::format("{}: column \"{}\" has {} values, but its shape holds {}", where,
+                                 column.name, count, product));
+  }
+  return Shape(column.shape.begin(), column.shape.end());
+}
+
+void write_column(hid_t group, const Column& column, const std::string& where) {
+  check_name(column.name, where);
+  const Shape shape = checked_shape(column, where);
+  std::visit(
+      [&](const auto& values) { write_dataset(group, column.name, column.unit, shape, std::span(values)); },
+      column.values);
+  if (column.attributes.empty()) return;
+  const Handle dataset(H5Dopen2(group, column.name.c_str(), H5P_DEFAULT), H5Dclose, column.name);
+  for (const auto& [name, text] : column.attributes) write_attribute(dataset, name, text);
+}
+
+std::vector<SummaryCell> full_row(const CaseResult& result) {
+  std::vector<SummaryCell> row{{"case", "", result.id}};
+  for (const SummaryCell& cell : result.summary) {
+    if (cell.name == "case") throw InputError("summary column \"case\" is reserved for the id of the case");
+  }
+  row.insert(row.end(), result.summary.begin(), result.summary.end());
+  const auto add_missing = [&](const char* name, std::string text) {
+    for (const SummaryCell& cell : row) {
+      if (cell.name == name) return;
+    }
+    row.push_back({name, "", std::move(text)});
+  };
+  add_missing("verdict", std::string(to_string(result.verdict)));
+  add_missing("reason", result.reason);
+  return row;
+}
+
+void write_summary(hid_t file, const std::vector<CaseResult>& cases) {
+  const Handle group = make_group(file, "summary");
+  std::vector<Column> columns;
+  for (const CaseResult& result : cases) {
+    const std::vector<SummaryCell> row = full_row(result);
+    const std::string where = "summary of case \"" + result.id + "\"";
+    if (columns.empty()) {
+      for (const SummaryCell& cell : row) {
+        Column& column = columns.emplace_back();
+        column.name = cell.name;
+        column.unit = cell.unit;
+        std::visit([&]<class T>(const T&) { column.values = std::vector<T>(); }, cell.value);
+      }
+    }
+    if (row.size() != columns.size()) {
+      throw InputError(
+          fmt::format("{}: {} cells, but the first case has {}", where, row.size(), columns.size()));
+    }
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i].name != columns[i].name || row[i].unit != columns[i].unit ||
+          row[i].value.index() != columns[i].values.index()) {
+        throw InputError(
+            fmt::format("{}: cell {} is \"{}\" [{}], which differs from \"{}\" [{}] of the first case", where,
+                        i, row[i].name, row[i].unit, columns[i].name, columns[i].unit));
+      }
+      std::visit(
+          [&]<class T>(const T& value) { std::get<std::vector<T>>(columns[i].values).push_back(value); },
+          row[i].value);
+    }
+  }
+  for (const Column& column : columns) write_column(group, column, "summary");
+}
+
+Verdict verdict_of(const std::string& text) {
+  for (const Verdict verdict : {Verdict::holds, Verdict::fails}) {
+    if (text == to_string(verdict)) return verdict;
+  }
+  return Verdict::not_applicable;
+}
+
+}  // namespace
+
+void write_cases(hid_t file, const std::vector<CaseResult>& cases) {
+  const Handle group = make_group(file, "cases");
+  std::set<std::string> ids;
+  for (const CaseResult& result : cases) {
+    check_name(result.id, "case");
+    if (!ids.insert(result.id).second) throw InputError("case \"" + result.id + "\" is there twice");
+    const Handle place = make_group(group, result.id);
+    write_attribute(place, "key", result.key);
+    write_attribute(place, "verdict", std::string(to_string(result.verdict)));
+    write_attribute(place, "reason", result.reason);
+    for (const Column& column : result.columns) write_column(place, column, "case \"" + result.id + "\"");
+  }
+  write_summary(file, cases);
+}
+
+std::vector<Column> read_summary(hid_t file) {
+  std::vector<Column> columns;
+  if (!has_link(file, "summary")) return columns;
+  const Handle group = open_group(file, "summary");
+  for (const std::string& name : link_names(group)) columns.push_back(read_dataset(group, name));
+  return columns;
+}
+
+std::vector<CaseResult> read_cases(hid_t file) {
+  std::vector<CaseResult> cases;
+  const Handle group = open_group(file, "cases");
+  for (const std::string& id : link_names(group)) {
+    const Handle place = open_group(group, id);
+    const Attributes attributes = read_attributes(place);
+    CaseResult& result = cases.emplace_back();
+    result.id = id;
+    result.key = text_of(attributes, "key");
+    result.verdict = verdict_of(text_of(attributes, "verdict"));
+    result.reason = text_of(attributes, "reason");
+    for (const std::string& name : link_names(place)) result.columns.push_back(read_dataset(place, name));
+  }
+  const std::vector<Column> summary = read_summary(file);
+  if (summary.empty() && !cases.empty()) throw LibraryError("the summary is missing");
+  for (const Column& column : summary) {
+    std::visit(
+        [&](const auto& values) {
+          if (values.size() != cases.size()) {
+            throw LibraryError(fmt::format("summary column \"{}\" has {} rows for {} cases", column.name,
+                                           values.size(), cases.size()));
+          }
+          if (column.name == "case") return;
+          for (std::size_t i = 0; i < values.size(); ++i) {
+            cases[i].summary.push_back({column.name, column.unit, values[i]});
+          }
+        },
+        column.values);
+  }
+  return cases;
+}
+
+}  // namespace fw::store

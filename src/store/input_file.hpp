@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "store/attribute.hpp"
+#include "store/file_driver.hpp"
+
+namespace fw::store {
+
+/// A federwerk result opened for reading. The caller holds a LibraryLock.
+class InputFile {
+ public:
+  /// Throws InputError that names the path: not there, no permission, no HDF5 file, truncated, changed since
+  /// it was sealed, not of this program, or of a later version of it.
+  explicit InputFile(const std::filesystem::path& path);
+
+  hid_t id() const { return file_; }
+  const std::filesystem::path& path() const { return path_; }
+  const Attributes& attributes() const { return attributes_; }
+  std::string kind() const { return text_of(attributes_, "kind"); }
+  bool sealed() const { return sealed_; }
+
+ private:
+  std::filesystem::path path_;
+  std::shared_ptr<DriverFile> source_;
+  Handle file_;
+  Attributes attributes_;
+  bool sealed_ = false;
+};
+
+}  // namespace fw::store

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace fw::store {
+
+/// A result file for people at a terminal: where it comes from, then the summary table and the verdicts of a
+/// study, or times, sizes, energies and work of a trajectory. Throws InputError that names the file.
+std::string show(const std::filesystem::path& path);
+
+/// The same as one JSON object: `file`, `attributes` (all of the root), and `summary` (an array of objects,
+/// one per case) with `units` and `verdicts`, or `trajectory` with `counters`. Numbers that are not finite
+/// are null. Throws InputError.
+std::string show_json(const std::filesystem::path& path);
+
+}  // namespace fw::store

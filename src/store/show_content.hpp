@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <variant>
+
+#include "store/attribute.hpp"
+#include "store/trajectory_summary.hpp"
+#include "study/result.hpp"
+
+namespace fw::store {
+
+/// The summary of a study with its verdicts counted.
+struct StudySummary {
+  Attributes attributes;  ///< of the root
+  std::vector<study::Column> columns;
+  std::array<std::int64_t, 3> verdicts{};  ///< holds, fails, not applicable
+};
+
+/// What `show` says about a file, read but not yet put into words.
+using ShowContent = std::variant<StudySummary, TrajectorySummary>;
+
+/// Throws InputError that names the file.
+ShowContent read_show_content(const std::filesystem::path& path);
+
+}  // namespace fw::store

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "random_model.hpp"
+
+// The sanitizers bring their own allocator, which must not be replaced; the release build carries this test.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool counts_allocations = false;
+namespace {
+std::atomic<std::size_t> allocations{0};
+}
+#else
+constexpr bool counts_allocations = true;
+namespace {
+std::atomic<std::size_t> allocations{0};
+}
+// Both operator new and Eigen come down to malloc; glibc lets a program replace it and keeps its own
+// reachable.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  return __libc_malloc(size);
+}
+#endif
+
+namespace fw::mechanics {
+namespace {
+
+template <class Action>
+std::size_t allocations_of(Action action) {
+  const std::size_t before = allocations.load();
+  action();
+  return allocations.load() - before;
+}
+
+TEST(Evaluation, AllocatesNothing) {
+  if (!counts_allocations) GTEST_SKIP() << "the sanitizer's allocator cannot be counted";
+  EXPECT_GE(allocations_of([] { const std::vector<double> values(1000, 1.0); }), 1u);
+  EXPECT_GE(allocations_of([] { const Vector values = Vector::Ones(1000); }), 1u);
+
+  RandomModels random(20260701);
+  for (const SpringLaw law : all_laws) {
+    const MassSpringSystem system(random.everything(law));
+    const State state = random.state(system.model());
+    const Vector y = state.stacked(), w = random.vector(y.size(), 1.0);
+    const Index n = state.q.size();
+    Vector dydt(2 * n), product(2 * n), f(n), df(n);
+    EXPECT_EQ(allocations_of([&] {
+                system.force(0.0, state.q, state.v, f);
+                system.rhs(0.0, y, dydt);
+                system.jacobian_product(0.0, y, w, product);
+                system.tangent_product(0.0, y.head(n), y.tail(n), w.head(n), w.tail(n), df);
+                system.energies(state.q, state.v);
+                system.dissipated_power(state.q, state.v);
+              }),
+              0u);
+    SparseMatrix K = system.tangent_pattern(), D = K, J = system.jacobian_pattern();
+    EXPECT_EQ(allocations_of([&] {
+                system.stiffness(0.0, state.q, state.v, TangentModel::psd_projection, K);
+                system.damping(0.0, state.q, state.v, D);
+                system.jacobian(0.0, y, J);
+              }),
+              0u);
+  }
+}
+
+TEST(Construction, AllocatesAHandfulOfArraysAndNothingPerSpring) {
+  if (!counts_allocations) GTEST_SKIP() << "the sanitizer's allocator cannot be counted";
+  RandomModels random(20260702);
+  const auto cost = [&](int springs) {
+    MassSpringModel model = random.network(SpringLaw::hooke, 1000, springs, true);
+    return allocations_of([&] {
+      const MassSpringSystem system(std::move(model));
+      system.tangent_pattern();
+    });
+  };
+  const std::size_t small = cost(100);
+  EXPECT_EQ(cost(10000), small);
+  EXPECT_LE(small, 40u);
+}
+
+}  // namespace
+}  // namespace fw::mechanics
