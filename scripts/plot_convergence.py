@@ -12,16 +12,20 @@ from matplotlib.lines import Line2D
 from plot_style import ALARM, QUIET, label, look, new_figure
 
 ROWS_PER_FIGURE = 3
-QUANTITIES = {"error_position": "position error", "error_velocity": "velocity error"}
+MECHANICAL = {"error_position": "position error", "error_velocity": "velocity error"}
+QUANTITIES = {**MECHANICAL, "error": "error"}
 
 
-def order_text(row):
-    """ "order 2.00 [1.98, 2.02]", with the verdict unless it is the good one."""
-    if not numpy.isfinite(row["order"]):
-        fitted = "no order fitted"
-    else:
-        fitted = f"order {row['order']:.2f} [{row['order_low']:.2f}, {row['order_high']:.2f}]"
-    return fitted if row["verdict"] == "holds" else f"{fitted}, {row['verdict']}"
+def order_text(row, suffixes):
+    """ "order 2.00 [1.98, 2.02]", with the verdict unless it is the good one; for the orders of position and velocity
+    "order x 2.00 [1.98, 2.02], v 2.00 [1.98, 2.02]"."""
+    parts = []
+    for name, suffix in suffixes.items():
+        order, low, high = (row[f"order{end}{suffix}"] for end in ("", "_low", "_high"))
+        fitted = f"{order:.2f} [{low:.2f}, {high:.2f}]" if numpy.isfinite(order) else "not fitted"
+        parts.append(f"{name} {fitted}".strip())
+    fitted = "order " + ", ".join(parts)
+    return fitted if row["verdict"] == "holds" else f"{fitted}: {row['verdict']}"
 
 
 def drawable(step, error):
@@ -63,7 +67,8 @@ def draw_panel(result, axes, quantity, rows):
     for index, row in enumerate(rows):
         case = result.case_of(row)
         step, error = result.values("step", case), result.values(quantity, case)
-        used = result.values("used", case).astype(bool)
+        flags = quantity.replace("error", "used")  # each quantity has its own fit where the file tells
+        used = result.values(flags if flags in case else "used", case).astype(bool)
         missing += draw_series(axes, step, error, used, look(index))
         fitted = used & drawable(step, error)
         expected = float(row["expected_order"])
@@ -79,14 +84,16 @@ def draw_panel(result, axes, quantity, rows):
         draw_reference_slopes(axes, anchors, numpy.concatenate(steps).max())
     unit_step, unit_error = result.unit("step", case), result.unit(quantity, case)
     axes.set_xlabel(label("step h", unit_step))
-    axes.set_ylabel(label(QUANTITIES.get(quantity, "error"), unit_error))
+    axes.set_ylabel(label(QUANTITIES[quantity], unit_error))
     if missing:
         axes.annotate(f"{missing} not shown: zero or not finite", (1.0, 0.0), xytext=(0, -50), ha="right",
                       xycoords="axes fraction", textcoords="offset points", fontsize=9.5, color=ALARM)
 
 
-def draw_legend(axes, rows, name):
-    handles = [Line2D([], [], **look(index), linewidth=1.2, label=f"{row[name]}: {order_text(row)}")
+def draw_legend(axes, rows, name, quantities):
+    mechanical = len(quantities) == 2 and all("order_position" in row for row in rows)
+    suffixes = {"x": "_position", "v": "_velocity"} if mechanical else {"": ""}
+    handles = [Line2D([], [], **look(index), linewidth=1.2, label=f"{row[name]}: {order_text(row, suffixes)}")
                for index, row in enumerate(rows)]
     handles.append(Line2D([], [], linestyle="none", marker="o", color=QUIET, markerfacecolor="white",
                           label="hollow: not in the fit"))
@@ -94,26 +101,36 @@ def draw_legend(axes, rows, name):
                 title="fitted order with 95 % interval", alignment="left", title_fontsize=10.5)
 
 
+def quantities_of(result, rows):
+    """Position and velocity where the cases of these rows tell them apart, else the one error of the state."""
+    for row in rows:
+        case = result.case_of(row)
+        if not all(name in case and drawable(result.values("step", case), result.values(name, case)).any()
+                   for name in MECHANICAL) and result.values("step", case).size:
+            return ["error"]
+    return list(MECHANICAL)
+
+
 def draw(result, by="problem"):
     """The figures of a convergence study, a row of panels per problem or per method."""
-    summary = result.summary()
     other = "method" if by == "problem" else "problem"
     groups = {}
-    for row in summary:
+    for row in result.summary():
         groups.setdefault(row[by], []).append(row)
     names = list(groups)
     figures = []
     for first in range(0, len(names), ROWS_PER_FIGURE):
         page = names[first:first + ROWS_PER_FIGURE]
-        both = all(quantity in result.case_of(row) for name in page for row in groups[name] for quantity in QUANTITIES)
-        quantities = list(QUANTITIES) if both else ["error"]
-        figure, axes = new_figure(result, 5.2 * len(quantities) + 4.4, 4.3 * len(page) + 0.7, len(page),
-                                  len(quantities))
+        quantities = {name: quantities_of(result, groups[name]) for name in page}
+        columns = max(len(chosen) for chosen in quantities.values())
+        figure, axes = new_figure(result, 5.2 * columns + 5.4, 4.3 * len(page) + 0.7, len(page), columns)
         for row_of_axes, name in zip(axes, page):
-            for panel, quantity in zip(row_of_axes, quantities):
+            for panel in row_of_axes[len(quantities[name]):]:
+                panel.remove()
+            for panel, quantity in zip(row_of_axes, quantities[name]):
                 draw_panel(result, panel, quantity, groups[name])
                 panel.set_title(name, loc="left")
-            draw_legend(row_of_axes[-1], groups[name], other)
+            draw_legend(row_of_axes[len(quantities[name]) - 1], groups[name], other, quantities[name])
         figures.append(figure)
     return figures
 

@@ -63,9 +63,9 @@ def look(index):
 
 
 def label(quantity, unit):
-    """An axis label: "step h [s]"; a quantity without dimension has no brackets."""
+    """An axis label: "step h [s]"; a quantity without dimension, or of mixed ones ("SI"), has no brackets."""
     unit = unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
-    return quantity if unit in ("", "1") else f"{quantity} [{unit}]"
+    return quantity if unit in ("", "1", "SI") else f"{quantity} [{unit}]"
 
 
 def number(value):

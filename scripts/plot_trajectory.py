@@ -103,9 +103,8 @@ def draw(result):
                 angular_scale)
     axes[2, 1].set_xlabel(label("time t", result.unit("trajectory/time")))
 
-    status = result.file.attrs.get("solver_status", result.file["trajectory"].attrs.get("solver_status", "success"))
-    status = text(status)
-    if status != "success":
+    status = text(result.file.attrs.get("solver_status", "success"))
+    if not status.startswith("success"):
         figure.suptitle(f"{result.title}\nstopped: {status}", color=ALARM)
     return [figure]
 

@@ -1,5 +1,7 @@
 """What the pictures of kind "simulate" have in common: reading the cases, axis limits, labels and styles."""
 
+import math
+
 import numpy
 from plot_style import EXACT, MARKERS, PALETTE, number
 
@@ -42,7 +44,7 @@ def panels(result, state_size):
             raise result.error(f"{group.name}/state has {case['state'].shape[1]} components, expected {state_size}")
         groups.setdefault((case["problem"], case["method"]), []).append(case)
     for cases in groups.values():
-        cases.sort(key=lambda case: -case["step"])
+        cases.sort(key=lambda case: (math.isnan(case["step"]), -case["step"]))
     if len(groups) > MOST_PANELS:
         raise result.error(f"{len(groups)} pairs of problem and method do not fit into one picture; at most "
                            f"{MOST_PANELS} do")
@@ -59,9 +61,9 @@ def field_limits(curves, field):
 
 
 def series_label(case, *values_and_limits):
-    """ "h = 0.5 s", and whether the curve leaves the picture."""
-    unit = case["time_unit"]
-    text = f"h = {number(case['step'])}" + (f" {unit}" if unit not in ("", "1") else "")
+    """ "h = 0.5 s" (a scheme that chooses its steps has none), and whether the curve leaves the picture."""
+    unit = case["time_unit"] if case["time_unit"] != "1" else ""
+    text = "adaptive steps" if math.isnan(case["step"]) else f"h = {number(case['step'])} {unit}".rstrip()
     for values, (low, high) in zip(values_and_limits[::2], values_and_limits[1::2]):
         if not numpy.all((values >= low) & (values <= high)):
             return text + "\n(leaves the picture)"

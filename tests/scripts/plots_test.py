@@ -109,10 +109,10 @@ class Refusals(PlotTest):
     def test_a_missing_dataset_is_named(self):
         path = self.write("convergence")
         with h5py.File(path, "r+") as file:
-            del file["cases/henon_heiles-rk4/used"]
+            del file["cases/henon_heiles-rk4/step"]
         answer = self.script("plot_convergence.py", path)
         self.assertEqual(answer.returncode, 2)
-        self.assertIn("found no /cases/henon_heiles-rk4/used", answer.stderr)
+        self.assertIn("found no /cases/henon_heiles-rk4/step", answer.stderr)
 
     def test_files_that_are_no_results_are_refused(self):
         (self.folder / "text.h5").write_text("no HDF5")
@@ -139,12 +139,35 @@ class Refusals(PlotTest):
 
 
 class Convergence(PlotTest):
-    def test_shows_the_fitted_order_with_its_interval_and_the_verdict(self):
+    def test_shows_the_fitted_orders_with_their_intervals_and_the_verdict(self):
         figure, = self.draw(plot_convergence, self.write("convergence"))
         entries = texts_of_legend(figure.axes[3])
-        self.assertIn("rk4: order 4.00 [3.98, 4.01]", entries)
-        self.assertIn("midpoint: order 2.00 [1.98, 2.01], fails", entries)
-        self.assertIn("sundials:cvode_bdf: no order fitted, not applicable", entries)
+        self.assertIn("rk4: order x 4.00 [3.98, 4.01], v 3.99 [3.97, 4.00]", entries)
+        self.assertIn("midpoint: order x 2.00 [1.98, 2.01], v 1.99 [1.97, 2.00]: fails", entries)
+        self.assertIn("sundials:cvode_bdf: order x not fitted, v not fitted: not applicable", entries)
+
+    def test_shows_one_order_where_position_and_velocity_have_none_of_their_own(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            for name in [name for name in file["summary"] if name.endswith(("_position", "_velocity", "case"))]:
+                del file["summary"][name]
+        figure, = self.draw(plot_convergence, path)
+        self.assertIn("rk4: order 4.00 [3.98, 4.01]", texts_of_legend(figure.axes[3]))
+
+    def test_finds_a_case_by_the_name_that_the_summary_gives(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            file.move("cases/henon_heiles-rk4", "cases/renamed")
+            names = [name.decode() for name in file["summary/case"][:]]
+            names[names.index("henon_heiles-rk4")] = "renamed"
+            file["summary/case"][:] = names
+        self.assertEqual(len(self.draw(plot_convergence, path)), 1)
+
+    def test_position_and_velocity_have_hollow_points_of_their_own(self):
+        figure, = self.draw(plot_convergence, self.write("convergence"))
+        hollow = [sum(len(line.get_xdata()) for line in axes.lines
+                      if colors.same_color(line.get_markerfacecolor(), "white")) for axes in figure.axes[:2]]
+        self.assertGreater(hollow[1], hollow[0])
 
     def test_draws_points_outside_the_fit_hollow_and_no_others(self):
         path = self.write("convergence")
@@ -187,15 +210,29 @@ class Convergence(PlotTest):
         with ResultFile(self.write("convergence")) as result:
             figures = plot_convergence.draw(result, by="method")
         self.assertEqual(figures[0].axes[0].get_title(loc="left"), "explicit_euler")
-        self.assertTrue(texts_of_legend(figures[0].axes[1])[0].startswith("henon_heiles: order 1.00"))
+        self.assertTrue(texts_of_legend(figures[0].axes[1])[0].startswith("henon_heiles: order x 1.00"))
 
     def test_a_first_order_system_has_one_panel_with_its_error(self):
         path = self.write("convergence")
         with h5py.File(path, "r+") as file:
-            for case in file["cases"].values():
-                del case["error_position"], case["error_velocity"]
+            for name, case in file["cases"].items():
+                if name.startswith("henon_heiles"):
+                    case["error_position"][:] = numpy.nan
+                    case["error_velocity"][:] = numpy.nan
         figure, = self.draw(plot_convergence, path)
-        self.assertEqual([axes.get_ylabel() for axes in figure.axes], ["error", "error"])  # one per problem
+        self.assertEqual([axes.get_ylabel() for axes in figure.axes],
+                         ["error", "position error [m]", "velocity error [m/s]"])
+        self.assertIn("rk4: order 4.00 [3.98, 4.01]", texts_of_legend(figure.axes[0]))
+
+    def test_a_case_without_any_level_is_listed(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            case = file["cases/henon_heiles-rk4"]
+            for name in list(case):
+                del case[name]
+                synthetic_results.put(case, name, numpy.zeros(0))
+        figure, = self.draw(plot_convergence, path)
+        self.assertTrue(any(entry.startswith("rk4: ") for entry in texts_of_legend(figure.axes[1])))
 
 
 class Trajectory(PlotTest):
@@ -257,6 +294,14 @@ class SimulatedCases(PlotTest):
                         del case.attrs[fact]
         figure, = self.draw(plot_spiral, path)
         self.assertIn("h = 0.02 s", texts_of_legend(figure.axes[0]))
+
+    def test_a_scheme_that_chooses_its_steps_is_labelled_so(self):
+        path = self.write("spiral")
+        with h5py.File(path, "r+") as file:
+            file["cases/circle-explicit_euler-1"].attrs["step"] = numpy.nan
+        figure, = self.draw(plot_spiral, path)
+        self.assertEqual([entry.split("\n")[0] for entry in texts_of_legend(figure.axes[0])],
+                         ["h = 0.5 s", "h = 0.1 s", "h = 0.02 s", "adaptive steps", "exact", "start"])
 
     def test_a_state_of_another_size_is_refused(self):
         with self.assertRaisesRegex(ResultError, "2 components, expected 1"):

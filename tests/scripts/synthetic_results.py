@@ -52,14 +52,19 @@ def convergence(path, problems=("henon_heiles", "single_spring_with_damper")):
                 put(case, "error_velocity", 2.5 * position, "m/s")
                 put(case, "error", position)
                 put(case, "used", used.astype(numpy.int64))
+                put(case, "used_position", used.astype(numpy.int64))
+                fitted = used & (step > step.min())  # velocity: one point less, to be told apart
+                put(case, "used_velocity", fitted.astype(numpy.int64))
                 verdict = "holds" if order else "not applicable"
                 if method == "midpoint" and problem != problems[0]:
                     verdict = "fails"
-                rows.append((problem, method, float(order), order - 0.003 if order else numpy.nan, order - 0.02,
-                             order + 0.014, verdict))
+                fit = numpy.array([-0.003, -0.02, 0.014]) + (order or numpy.nan)
+                rows.append((f"{problem}-{method}", problem, method, order, *fit, *fit, *(fit - 0.01), verdict))
         summary = file.create_group("summary")
-        for name, column in zip(("problem", "method", "expected_order", "order", "order_low", "order_high",
-                                 "verdict"), zip(*rows)):
+        names = ["order", "order_low", "order_high"]
+        names = ["case", "problem", "method", "expected_order", *names, *(f"{name}_position" for name in names),
+                 *(f"{name}_velocity" for name in names), "verdict"]
+        for name, column in zip(names, zip(*rows)):
             put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
 
 
@@ -87,7 +92,7 @@ def trajectory(path, particles=4, status="success", frames=400):
         put(group, "potential_energy", 3 - kinetic + 0.01 * time, "J")
         put(group, "linear_momentum", 1e-14 * random.standard_normal((frames, 3)) + [0.2, 0, 0], "kg*m/s")
         put(group, "angular_momentum", 1e-13 * random.standard_normal((frames, 3)) + [0, -2.5, 0], "kg*m^2/s")
-        group.attrs["solver_status"] = status
+        file.attrs["solver_status"] = status
         system = file.create_group("system")
         put(system, "mass", numpy.ones(particles), "kg")
         put(system, "springs", numpy.stack([row[:-1], row[1:]], axis=1).astype(numpy.int64))
