@@ -139,6 +139,7 @@ TEST_P(EveryProblem, StartsAndMovesAsItsClosedFormSays) {
 }
 
 TEST_P(EveryProblem, KeepsItsInvariantsAlongTheReference) {
+  if (problem.invariants.empty()) return;  // none are claimed
   const double t1 = std::min(problem.ivp.t1, 1.3);
   const std::vector<double> times = {0.21 * t1, 0.5 * t1, t1};
   const auto reference = certified_reference(problem.ivp, times);
