@@ -119,6 +119,54 @@ bool may_still_converge(const ExtrapolationTableau& scheme, std::size_t row, dou
   return predicted <= std::log(100.0);
 }
 
+/// How a step that was computed came out: the row at which it ended and that row's error.
+struct Attempt {
+  std::size_t row = 0;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< in tolerances; not a number after an overflow
+};
+
+/// Computes rows for a step H from (t, y) until one passes the error test, or none can any more.
+Attempt attempt_step(Tableau& tableau, const ExtrapolationSettings& settings, const Float128& t,
+                     const State& y, const Float128& H, const State& scale) {
+  // Rows before the fifth are not trusted to have converged: their two values may agree by accident.
+  const std::size_t last_row = settings.tableau.rows() - 1;
+  const std::size_t first_trusted_row = std::min<std::size_t>(4, last_row);
+  Attempt attempt;
+  for (std::size_t row = 0; row <= last_row; ++row) {
+    tableau.compute_row(row, t, y, H);
+    if (row + 1 < first_trusted_row) continue;
+    const double error_before = attempt.error;
+    attempt = {row,
+               error_in_tolerances(y, scale, tableau.best(row), tableau.second_best(), settings.tolerance)};
+    if (!std::isfinite(attempt.error)) break;
+    if (row < first_trusted_row) continue;
+    if (attempt.error <= 1.0 || !may_still_converge(settings.tableau, row, error_before, attempt.error))
+      break;
+  }
+  return attempt;
+}
+
+/// By which factor the step after an accepted one may differ from it. A step is meant to end with one row to
+/// spare.
+double growth(const Attempt& attempt, std::size_t last_row) {
+  if (attempt.error > 1.0) return 2.0;  // forced
+  const double order = 2.0 * static_cast<double>(attempt.row) + 1.0;
+  const double factor = std::clamp(0.8 * std::pow(std::max(attempt.error, 1e-30), -1.0 / order), 0.2, 4.0);
+  if (attempt.row == last_row) return factor;
+  if (attempt.row + 1 == last_row) return std::clamp(factor, 1.0, 1.1);
+  return std::max(factor, 1.5);
+}
+
+/// y += increment by compensated summation; `carry` is what the additions to y have lost so far.
+void add_compensated(State& y, State& carry, const State& increment) {
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const Float128 addend = increment[i] + carry[i];
+    const Float128 sum = y[i] + addend;
+    carry[i] = abs(y[i]) >= abs(addend) ? Float128((y[i] - sum) + addend) : Float128((addend - sum) + y[i]);
+    y[i] = sum;
+  }
+}
+
 double first_step(const State& y, const State& slope, double largest_step) {
   double state_norm = 0.0, slope_norm = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
@@ -147,96 +195,70 @@ ExtrapolationTableau harmonic_extrapolation(int rows) {
 
 ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const double> times,
                                             const ExtrapolationSettings& settings) {
-  // Rows before the fifth are not trusted to have converged: their two values may agree by accident.
-  constexpr std::size_t first_trusted_row = 4;
   ExtrapolationRun run;
   Tableau tableau(*ivp.system, settings.tableau, run.work);
   const std::size_t last_row = settings.tableau.rows() - 1;
   State y = initial_state_extended(ivp);
-  State carry(y.size(), 0);  // compensated summation: what the additions to y have lost
-  run.scale.assign(y.size(), 0);
-  for (std::size_t i = 0; i < y.size(); ++i) run.scale[i] = abs(y[i]);
+  State carry(y.size(), 0);
+  for (const Float128& component : y) run.scale.push_back(abs(component));
 
   Float128 t = ivp.t0;
   const double end = times.empty() ? ivp.t0 : times.back();
+  const Float128 interval = Float128(end) - ivp.t0;
   const Float128 smallest_step = 32 * epsilon * std::max(std::abs(ivp.t0), std::abs(end));
-  const double largest_step = settings.largest_step > 0.0 ? settings.largest_step : (end - ivp.t0) / 50.0;
   Float128 proposal = 0;
   bool slope_is_current = false;
   int rejections_in_a_row = 0;
+  const auto fail = [&](StatusCode code, const std::string& what) {
+    run.status = {code, fmt::format("{} at t = {:.6g} of {:.6g}", what, static_cast<double>(t), end)};
+    return run;
+  };
 
   for (const double target : times) {
+    const Float128 largest_step = std::min(Float128(interval / settings.least_steps),
+                                           Float128((target - t) / settings.least_steps_per_output));
     while (t < target) {
       if (run.work.accepted_steps + run.work.rejected_steps >= settings.step_limit) {
-        run.status = {StatusCode::step_limit, fmt::format("{} steps taken at t = {:.6g} of {:.6g}",
-                                                          settings.step_limit, static_cast<double>(t), end)};
-        return run;
+        return fail(StatusCode::step_limit, fmt::format("{} steps taken", settings.step_limit));
       }
       if (!slope_is_current) {
         tableau.start(t, y);
         slope_is_current = true;
-        if (proposal == 0) proposal = first_step(y, tableau.start_slope(), largest_step);
+        if (proposal == 0) proposal = first_step(y, tableau.start_slope(), static_cast<double>(largest_step));
       }
       // A step never leaves a remainder much shorter than itself.
       const Float128 remaining = target - t;
-      proposal = std::max(smallest_step, std::min(proposal, Float128(largest_step)));
-      const bool reaches_target = proposal >= remaining;
-      const bool is_shortened = reaches_target || 2 * proposal > remaining;
-      const Float128 wish = reaches_target ? remaining : (is_shortened ? Float128(remaining / 2) : proposal);
-      const Float128 t_new = reaches_target ? Float128(target) : Float128(t + wish);
+      const Float128 wish = std::max(smallest_step, std::min(proposal, largest_step));
+      const bool reaches_target = wish >= remaining;
+      const Float128 t_new = reaches_target
+                                 ? Float128(target)
+                                 : Float128(t + (2 * wish > remaining ? Float128(remaining / 2) : wish));
       const Float128 H = t_new - t;
+      const bool is_shortened = H < proposal;
 
-      double error = std::numeric_limits<double>::quiet_NaN();
-      std::size_t row = 0;
-      for (; row <= last_row; ++row) {
-        tableau.compute_row(row, t, y, H);
-        if (row + 1 < std::min(first_trusted_row, last_row)) continue;
-        const double error_before = error;
-        error =
-            error_in_tolerances(y, run.scale, tableau.best(row), tableau.second_best(), settings.tolerance);
-        if (row == last_row || !std::isfinite(error)) break;
-        if (row < first_trusted_row) continue;
-        if (error <= 1.0 || !may_still_converge(settings.tableau, row, error_before, error)) break;
-      }
-      const double exponent = 1.0 / (2.0 * static_cast<double>(row) + 1.0);
-      const bool passed = error <= 1.0;
-      const bool forced = !passed && std::isfinite(error) && H <= 2 * smallest_step;
-      if (passed || forced) {
-        if (forced && ++run.forced_steps > settings.forced_step_limit) {
-          run.status = {StatusCode::step_too_small,
-                        fmt::format("the error test still fails with steps of {:.3g} at t = {:.6g}",
-                                    static_cast<double>(H), static_cast<double>(t))};
-          return run;
+      const Attempt attempt = attempt_step(tableau, settings, t, y, H, run.scale);
+      const bool is_finite = std::isfinite(attempt.error);
+      const bool is_smallest = H <= 2 * smallest_step;
+      if (is_finite && (attempt.error <= 1.0 || is_smallest)) {
+        if (attempt.error > 1.0 && ++run.forced_steps > settings.forced_step_limit) {
+          return fail(StatusCode::step_too_small, "the error test still fails with the smallest steps");
         }
-        const State& increment = tableau.best(row);
-        for (std::size_t i = 0; i < y.size(); ++i) {
-          const Float128 addend = increment[i] + carry[i];
-          const Float128 sum = y[i] + addend;
-          carry[i] =
-              abs(y[i]) >= abs(addend) ? Float128((y[i] - sum) + addend) : Float128((addend - sum) + y[i]);
-          y[i] = sum;
-          run.scale[i] = std::max(run.scale[i], Float128(abs(sum)));
-        }
+        add_compensated(y, carry, tableau.best(attempt.row));
+        for (std::size_t i = 0; i < y.size(); ++i) run.scale[i] = std::max(run.scale[i], Float128(abs(y[i])));
         t = t_new;
         run.work.accepted_steps += 1;
         slope_is_current = false;
-        double factor = std::clamp(0.8 * std::pow(std::max(error, 1e-30), -exponent), 0.2, 4.0);
-        if (row < last_row)
-          factor = std::max(factor, 1.5);  // converged early: the step was shorter than needed
-        if (forced) factor = 2.0;
-        proposal = is_shortened ? std::max(proposal, Float128(H * factor)) : Float128(H * factor);
+        rejections_in_a_row = 0;
+        const Float128 next = H * growth(attempt, last_row);
+        proposal = std::min(interval, is_shortened ? std::max(proposal, next) : next);
       } else {
         run.work.rejected_steps += 1;
-        if (!std::isfinite(error) && H <= 2 * smallest_step) {
-          run.status = {StatusCode::non_finite, fmt::format("the state is no longer finite after t = {:.6g}",
-                                                            static_cast<double>(t))};
-          return run;
-        }
-        // The estimate tells little where it was given up early: shrink faster the longer that goes on.
+        if (is_smallest)
+          return fail(StatusCode::non_finite, "the state is no longer finite after a smallest step");
+        // The estimate tells little where a step was given up early: shrink faster the longer that goes on.
         constexpr double shrink[] = {0.7, 0.5, 0.3, 0.1};
-        const double factor = std::isfinite(error) ? shrink[std::min(rejections_in_a_row, 3)] : 0.1;
+        proposal = H * (is_finite ? shrink[std::min(rejections_in_a_row, 3)] : 0.1);
         rejections_in_a_row += 1;
-        proposal = H * factor;
       }
     }
     run.states.push_back(y);

@@ -28,8 +28,10 @@ struct ExtrapolationSettings {
   ExtrapolationTableau tableau;
   /// Largest estimated error per step in component i, relative to the largest |y_i| met so far.
   double tolerance = 1e-30;
-  /// Largest step [s]; 0: one fiftieth of the interval. It keeps short events from being stepped over.
-  double largest_step = 0.0;
+  /// The least number of steps for the whole interval. It keeps short events from being stepped over.
+  int least_steps = 50;
+  /// The least number of steps from one time asked for to the next.
+  int least_steps_per_output = 1;
   std::uint64_t step_limit = 5'000'000;
   /// How many steps of the smallest size may be taken with their error test failed.
   std::uint64_t forced_step_limit = 1'000;

@@ -23,8 +23,9 @@ std::string digits(const Float128& value) {
 }
 
 void describe(std::string& text, const ExtrapolationSettings& settings) {
-  text += fmt::format("tolerance {:a} largest_step {:a} limits {} {}\n", settings.tolerance,
-                      settings.largest_step, settings.step_limit, settings.forced_step_limit);
+  text +=
+      fmt::format("tolerance {:a} least_steps {} {} limits {} {}\n", settings.tolerance, settings.least_steps,
+                  settings.least_steps_per_output, settings.step_limit, settings.forced_step_limit);
   for (std::size_t j = 0; j < settings.tableau.rows(); ++j) {
     text += fmt::format("row {}", settings.tableau.substeps[j]);
     for (const Float128& divisor : settings.tableau.divisor[j]) text += fmt::format(" {}", digits(divisor));

@@ -32,6 +32,9 @@ void check_input(const Ivp& ivp, std::span<const double> times, const ReferenceO
   for (const ExtrapolationSettings* settings : {&options.fine, &options.coarse}) {
     if (settings->tableau.rows() < 2)
       throw InputError("reference: an extrapolation tableau needs at least 2 rows");
+    if (settings->least_steps < 1 || settings->least_steps_per_output < 1) {
+      throw InputError("reference: the least number of steps has to be at least 1");
+    }
     if (!(settings->tolerance > 0.0)) {
       throw InputError(fmt::format("reference: tolerance is {}, expected a number > 0", settings->tolerance));
     }

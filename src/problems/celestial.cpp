@@ -195,11 +195,13 @@ Problem pleiades(const ProblemParameters& given) {
                  (y.head(7).array() * y.tail(7).array() - y.segment(7, 7).array() * y.segment(14, 7).array()))
              .sum();
        }}};
-  const char* digits[] = {"0.37061391439705129", "3.237284092057233",  "-3.222559032418324",
+  // The published last digit of x3 (…324), y3 (…6543) and y6 (…5824) is left out: two unrelated methods in
+  // binary128 agree on -3.2225590324183233, 5.2250818434565442 and -0.24296823449358234.
+  const char* digits[] = {"0.37061391439705129", "3.237284092057233",  "-3.22255903241832",
                           "0.6597091455775308",  "0.342558170715658",  "1.562172101400631",
                           "-0.7003092922212495", "-3.943437585517392", "-3.271380973972550",
-                          "5.225081843456543",   "-2.590612434977470", "1.198213693392275",
-                          "-0.2429682344935824", "1.091449240428980"};
+                          "5.22508184345654",    "-2.590612434977470", "1.198213693392275",
+                          "-0.242968234493582",  "1.091449240428980"};
   for (Index i = 0; i < 14; ++i) problem.known_values.push_back({3.0, i, digits[i]});
   problem.stiffness = spectral_radius_along_solution(problem.ivp);
   problem.parameters = parameters.text();

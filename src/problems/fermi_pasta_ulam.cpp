@@ -69,10 +69,12 @@ Problem fermi_pasta_ulam(const ProblemParameters& given) {
                            return energy;
                          }}};
   if (m == 3 && frequency.binary() == 50.0) {
-    problem.known_values = {{1.0, 0, "0.51767820806882268"},
-                            {1.0, 1, "0.53980860868328140"},
-                            {10.0, 0, "0.75633242161029199"},
-                            {10.0, 1, "0.71735962155453710"}};
+    problem.known_values = {
+        {1.0, 0, "0.51767820806882268"},
+        // Published is …28140, cut off instead of rounded: the value is 0.5398086086832814054.
+        {1.0, 1, "0.5398086086832814"},
+        {10.0, 0, "0.75633242161029199"},
+        {10.0, 1, "0.71735962155453710"}};
   }
   problem.stiffness = spectral_radius_along_solution(problem.ivp);
   problem.parameters = parameters.text();
