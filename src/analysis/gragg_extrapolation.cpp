@@ -106,13 +106,15 @@ double error_in_tolerances(const State& y, const State& scale, const State& best
   return static_cast<double>(error);
 }
 
-/// Whether row after row up to the last one may bring the error below the tolerance. The last row gained the factor
-/// q = error/error_before; for a smooth right-hand side row r gains q·(n_row/n_r)² by theory. A hundredfold is left
-/// to the estimate.
-bool may_still_converge(const ExtrapolationTableau& scheme, std::size_t row, double error_before, double error) {
+/// Whether row after row up to the last one may bring the error below the tolerance. The last row gained the
+/// factor q = error/error_before; for a smooth right-hand side row r gains q·(n_row/n_r)² by theory. A
+/// hundredfold is left to the estimate.
+bool may_still_converge(const ExtrapolationTableau& scheme, std::size_t row, double error_before,
+                        double error) {
   double predicted = std::log(error);
   for (std::size_t r = row + 1; r < scheme.rows(); ++r) {
-    predicted += std::log(error / error_before) + 2.0 * std::log(double(scheme.substeps[row]) / scheme.substeps[r]);
+    predicted +=
+        std::log(error / error_before) + 2.0 * std::log(double(scheme.substeps[row]) / scheme.substeps[r]);
   }
   return predicted <= std::log(100.0);
 }
@@ -190,7 +192,8 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
         tableau.compute_row(row, t, y, H);
         if (row + 1 < std::min(first_trusted_row, last_row)) continue;
         const double error_before = error;
-        error = error_in_tolerances(y, run.scale, tableau.best(row), tableau.second_best(), settings.tolerance);
+        error =
+            error_in_tolerances(y, run.scale, tableau.best(row), tableau.second_best(), settings.tolerance);
         if (row == last_row || !std::isfinite(error)) break;
         if (row < first_trusted_row) continue;
         if (error <= 1.0 || !may_still_converge(settings.tableau, row, error_before, error)) break;

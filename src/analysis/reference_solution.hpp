@@ -39,8 +39,8 @@ struct ReferenceSolution {
 /// The two resolutions of a certified reference and what is asked of them. They differ in tolerance, order
 /// and hence in every step taken, so that a mistake which depends on any of these shows in their difference.
 struct ReferenceOptions {
-  ExtrapolationSettings fine{harmonic_extrapolation(13), 1e-31, 0.0, 5'000'000, 1'000};
-  ExtrapolationSettings coarse{harmonic_extrapolation(11), 1e-27, 0.0, 5'000'000, 1'000};
+  ExtrapolationSettings fine{harmonic_extrapolation(10), 1e-32, 0.0, 5'000'000, 1'000};
+  ExtrapolationSettings coarse{harmonic_extrapolation(8), 1e-28, 0.0, 5'000'000, 1'000};
   /// The error bound has to stay below accuracy · (largest |y_i| met, but at least 1e-9 of the largest
   /// component's); otherwise the status is accuracy_not_reached.
   double accuracy = 1e-19;

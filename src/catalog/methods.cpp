@@ -101,9 +101,8 @@ const MethodEntry& find_method(const std::string& name) {
     if (entry.info.name == name) return entry;
     names.push_back(entry.info.name);
   }
-  const auto nearest = closest_name(name, names);
   throw InputError(fmt::format("unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
-                               nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : ""));
+                               did_you_mean(name, names)));
 }
 
 std::unique_ptr<Integrator> make_method(const std::string& text) {

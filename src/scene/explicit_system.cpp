@@ -40,7 +40,8 @@ void read_velocity(const CheckedTable& particles, std::size_t count, Scene& scen
   auto velocity = particles.vectors("velocity");
   if (velocity.size() != count) {
     particles.fail("velocity",
-                   fmt::format("found {} vectors, expected one per particle ({})", velocity.size(), count));
+                   fmt::format("found an array of length {}, expected one vector per particle ({})",
+                               velocity.size(), count));
   }
   for (const int i : scene.model.fixed) {
     auto& v = velocity[static_cast<std::size_t>(i)];

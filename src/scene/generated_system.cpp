@@ -58,8 +58,9 @@ Kind read_kind(const CheckedTable& generate) {
 std::array<int, 3> read_counts(const CheckedTable& generate, std::size_t axes) {
   const auto counts = generate.integers("counts", 2, largest_count);
   if (counts.size() != axes) {
-    generate.fail("counts", fmt::format("found an array of {}, expected the numbers of points along {} axes",
-                                        counts.size(), axes));
+    generate.fail("counts",
+                  fmt::format("found an array of length {}, expected the numbers of points along {} axes",
+                              counts.size(), axes));
   }
   std::array<int, 3> result{1, 1, 1};
   for (std::size_t a = 0; a < axes; ++a) result[a] = static_cast<int>(counts[a]);
@@ -95,8 +96,8 @@ std::array<double, 3> read_size(const CheckedTable& generate, const char* key,
   }
   const auto values = generate.numbers(key, NumberRule::positive);
   if (values.size() != axes) {
-    generate.fail(key,
-                  fmt::format("found an array of {}, expected the lengths of {} edges", values.size(), axes));
+    generate.fail(key, fmt::format("found an array of length {}, expected the lengths of {} edges",
+                                   values.size(), axes));
   }
   std::copy(values.begin(), values.end(), size.begin());
   return size;
@@ -169,19 +170,32 @@ std::vector<SpringFamily> read_families(const CheckedTable& generate, const Kind
   return families;
 }
 
-void read_springs(const CheckedTable& generate, const Kind& kind, const Lattice& lattice, Scene& scene) {
-  const auto families = read_families(generate, kind);
-  const double count = count_springs(lattice.counts, families);
+/// The springs of a lattice before any of them is made.
+struct SpringPlan {
+  std::vector<SpringFamily> families;
+  mechanics::SpringLaw law = mechanics::SpringLaw::hooke;
+  double rest_length_factor = 1.0;
+};
+
+SpringPlan read_spring_plan(const CheckedTable& generate, const Kind& kind, const Lattice& lattice) {
+  SpringPlan plan;
+  plan.families = read_families(generate, kind);
+  const double count = count_springs(lattice.counts, plan.families);
   if (count > max_spring_count) {
     generate.fail("springs",
                   fmt::format("found {:.4g} springs, expected at most {:.0f}", count, max_spring_count));
   }
-  const auto law = read_spring_law(generate);
-  const double factor = generate.number_or(
-      "rest_length_factor", 1.0,
-      law == mechanics::SpringLaw::strain ? NumberRule::positive : NumberRule::nonnegative);
+  plan.law = read_spring_law(generate);
+  const auto rule = plan.law == mechanics::SpringLaw::strain ? NumberRule::positive : NumberRule::nonnegative;
+  plan.rest_length_factor = generate.number_or("rest_length_factor", 1.0, rule);
+  return plan;
+}
+
+void make_springs(const CheckedTable& generate, const SpringPlan& plan, const Lattice& lattice,
+                  Scene& scene) {
+  const double factor = plan.rest_length_factor;
   auto& springs = scene.model.springs;
-  springs = lattice_springs(lattice, scene.position, families, law, factor);
+  springs = lattice_springs(lattice, scene.position, plan.families, plan.law, factor);
   const bool usable = std::all_of(springs.rest_length.begin(), springs.rest_length.end(),
                                   [&](double l) { return std::isfinite(l) && (l > 0.0 || factor == 0.0); });
   if (!usable) {
@@ -223,11 +237,12 @@ std::vector<PointGroup> read_generated_system(const CheckedTable& generate, Scen
   const Lattice lattice = kind.name == "chain"   ? read_chain(generate)
                           : kind.name == "cloth" ? read_cloth(generate)
                                                  : read_box(generate);
+  const SpringPlan plan = read_spring_plan(generate, kind, lattice);
   scene.position = lattice_positions(lattice);
   if (!scene.position.allFinite())
     generate.fail("", "found positions that overflow, expected finite positions");
   scene.model.mass = read_mass(generate, kind, lattice);
-  read_springs(generate, kind, lattice, scene);
+  make_springs(generate, plan, lattice, scene);
 
   const auto groups = kind.name == "chain"   ? line_groups(lattice)
                       : kind.name == "cloth" ? sheet_groups(lattice)

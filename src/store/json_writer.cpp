@@ -85,7 +85,13 @@ JsonWriter& JsonWriter::value(std::string_view text) {
 
 JsonWriter& JsonWriter::value(double number) {
   separate();
-  text_ += std::isfinite(number) ? fmt::format("{}", number) : "null";
+  if (!std::isfinite(number)) {
+    text_ += "null";
+    return *this;
+  }
+  const std::string digits = fmt::format("{}", number);
+  // A column of doubles stays one for readers that tell 4.0 from 4.
+  text_ += digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
   return *this;
 }
 

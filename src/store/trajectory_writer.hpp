@@ -15,12 +15,12 @@ namespace fw::store {
 
 /// What is stored of a frame besides its state.
 struct FrameQuantities {
-  double kinetic = 0.0;           ///< [J]
-  double elastic = 0.0;           ///< springs and anchors [J]
-  double gravitational = 0.0;     ///< [J]
-  double obstacle = 0.0;          ///< penalty energy [J]
-  Vec3<double> linear_momentum;   ///< [kg·m/s]
-  Vec3<double> angular_momentum;  ///< about the origin [kg·m²/s]
+  double kinetic = 0.0;             ///< [J]
+  double elastic = 0.0;             ///< springs and anchors [J]
+  double gravitational = 0.0;       ///< [J]
+  double obstacle = 0.0;            ///< penalty energy [J]
+  Vec3<double> linear_momentum{};   ///< [kg·m/s]
+  Vec3<double> angular_momentum{};  ///< about the origin [kg·m²/s]
 };
 
 /// The quantities of the state (t, q, v).

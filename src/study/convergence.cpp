@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 #include "analysis/order_fit.hpp"
@@ -54,12 +55,36 @@ class StopWhenInterrupted final : public Observer {
   const RunContext& context_;
 };
 
+/// A problem with its reference, which the first case to need it computes for all.
+class SharedProblem {
+ public:
+  explicit SharedProblem(StudyProblem problem) : problem_(std::move(problem)) {}
+
+  const StudyProblem& entry() const { return problem_; }
+
+  const analysis::ReferenceSolution& reference(const RunContext& context) const {
+    std::call_once(once_, [&] {
+      const double end[] = {problem_.problem.ivp.t1};
+      reference_ = problem_.problem.exact
+                       ? analysis::reference(problem_.problem, end)
+                       : analysis::ReferenceCache(context.reference_cache)
+                             .certified(problem_.identity, problem_.problem.ivp, end);
+    });
+    return reference_;
+  }
+
+ private:
+  StudyProblem problem_;
+  mutable std::once_flag once_;
+  mutable analysis::ReferenceSolution reference_;
+};
+
 /// The case problem × method.
 class ConvergenceCase {
  public:
-  ConvergenceCase(const StudyProblem& problem, std::string call, const Integrator& integrator, Settings settings,
+  ConvergenceCase(const SharedProblem& problem, std::string call, const Integrator& integrator, Settings settings,
                   const RunContext& context)
-      : problem_(problem), call_(std::move(call)), integrator_(integrator), settings_(settings), context_(context) {}
+      : shared_(problem), problem_(problem.entry()), call_(std::move(call)), integrator_(integrator), settings_(settings), context_(context) {}
 
   CaseResult run() {
     if (integrator_.info().needs_second_order && !is_second_order()) {
@@ -88,8 +113,7 @@ class ConvergenceCase {
   }
 
   bool find_reference() {
-    const analysis::ReferenceCache cache(context_.reference_cache);
-    reference_ = cache.reference(problem_.problem, ivp().t1, problem_.identity);
+    reference_ = shared_.reference(context_);
     if (!reference_.status.ok() || reference_.states.empty()) return false;
     scale_ = measure_scale(ivp(), reference_.states.front());
     return true;
@@ -259,6 +283,7 @@ class ConvergenceCase {
     result.summary.push_back({"reason", "", result.reason});
   }
 
+  const SharedProblem& shared_;
   const StudyProblem& problem_;
   std::string call_;
   const Integrator& integrator_;
@@ -297,7 +322,7 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
   const Settings settings = read_settings(spec, quick);
   const std::vector<std::string> methods = read_methods(spec, catalog);
   for (StudyProblem& entry : read_problems(spec, catalog)) {
-    const auto problem = std::make_shared<const StudyProblem>(std::move(entry));
+    const auto problem = std::make_shared<const SharedProblem>(std::move(entry));
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
@@ -305,8 +330,8 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
         spec.fail("methods", {i}, fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
       }
       plan.cases.push_back(
-          {.id = group_name(problem->label + "-" + call),
-           .identity = "convergence\n" + problem->identity + "method = " + call + "\n" + settings.text(),
+          {.id = group_name(problem->entry().label + "-" + call),
+           .identity = "convergence\n" + problem->entry().identity + "method = " + call + "\n" + settings.text(),
            .run = [problem, call, integrator, settings](const RunContext& context) {
              return ConvergenceCase(*problem, call, *integrator, settings, context).run();
            }});

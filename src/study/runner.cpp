@@ -1,10 +1,13 @@
 #include "study/runner.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <optional>
+#include <thread>
 
 #include "core/error.hpp"
 #include "core/sha256.hpp"
@@ -40,33 +43,62 @@ void complete_rows(StudyResult& study) {
   for (CaseResult& result : study.cases) result.summary.insert(result.summary.begin(), {"case", "", result.id});
 }
 
-}  // namespace
+/// The run of one plan, shared by its threads.
+class Run {
+ public:
+  Run(const Plan& plan, CaseArchive& archive, const RunOptions& options)
+      : plan_(plan), archive_(archive), options_(options), results_(plan.cases.size()) {}
 
-StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options) {
-  StudyResult study{.kind = plan.kind, .title = plan.title, .spec = plan.spec, .seed = plan.seed, .complete = true, .cases = {}};
-  for (std::size_t i = 0; i < plan.cases.size(); ++i) {
-    const PlannedCase& planned = plan.cases[i];
-    if (options.context.is_interrupted()) {
-      study.complete = false;
-      break;
-    }
-    const std::string key = sha256_hex(options.program + "\n" + planned.id + "\n" + planned.identity);
-    if (!options.force) {
-      if (std::optional<CaseResult> kept = archive.find(key)) {
-        study.cases.push_back(std::move(*kept));
-        if (options.finished) options.finished({i, plan.cases.size(), study.cases.back(), true, 0.0});
-        continue;
+  /// Takes one case after the other until none is left, the user interrupts or the archive fails.
+  void work() {
+    while (!stopped_ && !options_.context.is_interrupted()) {
+      const std::size_t index = next_++;
+      if (index >= plan_.cases.size()) return;
+      try {
+        run_case(index);
+      } catch (const Interrupted&) {
+        return;
+      } catch (...) {
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+        stopped_ = true;
       }
     }
-    if (options.started) options.started(i, plan.cases.size(), planned.id);
+  }
+
+  StudyResult result() {
+    if (failure_) std::rethrow_exception(failure_);
+    StudyResult study{.kind = plan_.kind, .title = plan_.title, .spec = plan_.spec, .seed = plan_.seed, .complete = true, .cases = {}};
+    for (std::optional<CaseResult>& result : results_) {
+      if (result) {
+        study.cases.push_back(std::move(*result));
+      } else {
+        study.complete = false;
+      }
+    }
+    complete_rows(study);
+    return study;
+  }
+
+ private:
+  void run_case(std::size_t index) {
+    const PlannedCase& planned = plan_.cases[index];
+    const std::string key = sha256_hex(options_.program + "\n" + planned.id + "\n" + planned.identity);
+    if (!options_.force) {
+      if (std::optional<CaseResult> kept = archive_.find(key)) {
+        finish(index, std::move(*kept), true, 0.0);
+        return;
+      }
+    }
+    if (options_.started) {
+      const std::lock_guard lock(mutex_);
+      options_.started(index, plan_.cases.size(), planned.id);
+    }
     const auto start = std::chrono::steady_clock::now();
     CaseResult result;
     bool archivable = true;
     try {
-      result = planned.run(options.context);
-    } catch (const Interrupted&) {
-      study.complete = false;
-      break;
+      result = planned.run(options_.context);
     } catch (const std::exception& error) {
       result.verdict = Verdict::fails;
       result.reason = error.what();
@@ -74,13 +106,36 @@ StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& o
     }
     result.id = planned.id;
     result.key = key;
-    if (archivable) archive.keep(result);
-    study.cases.push_back(std::move(result));
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (options.finished) options.finished({i, plan.cases.size(), study.cases.back(), false, seconds});
+    if (archivable) archive_.keep(result);
+    finish(index, std::move(result), false,
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  complete_rows(study);
-  return study;
+
+  void finish(std::size_t index, CaseResult result, bool kept, double seconds) {
+    const std::lock_guard lock(mutex_);
+    results_[index] = std::move(result);
+    if (options_.finished) options_.finished({index, plan_.cases.size(), *results_[index], kept, seconds});
+  }
+
+  const Plan& plan_;
+  CaseArchive& archive_;
+  const RunOptions& options_;
+  std::vector<std::optional<CaseResult>> results_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> stopped_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options) {
+  Run run(plan, archive, options);
+  std::vector<std::thread> threads;
+  for (int job = 1; job < options.jobs; ++job) threads.emplace_back([&run] { run.work(); });
+  run.work();
+  for (std::thread& thread : threads) thread.join();
+  return run.result();
 }
 
 }  // namespace fw::study

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <numeric>
+
+#include "app/commands.hpp"
+#include "catalog/methods.hpp"
+#include "catalog/problems.hpp"
+#include "catalog/study_kinds.hpp"
+#include "core/closest_name.hpp"
+#include "core/error.hpp"
+#include "integrators/tableaus.hpp"
+#include "store/json_writer.hpp"
+
+namespace fw::app {
+
+namespace {
+
+using store::JsonWriter;
+
+const integrators::ButcherTableau* find_tableau(const std::string& name) {
+  for (const integrators::ButcherTableau& tableau : integrators::tableaus()) {
+    if (tableau.name == name) return &tableau;
+  }
+  return nullptr;
+}
+
+std::string tableau_text(const integrators::ButcherTableau& tableau) {
+  std::string text = "\nButcher tableau (c | A, last row b)\n";
+  for (Index i = 0; i < tableau.b.size(); ++i) {
+    text += fmt::format("  {:>10.6g} |", tableau.c[i]);
+    for (Index j = 0; j < tableau.b.size(); ++j) text += fmt::format(" {:>10.6g}", tableau.A(i, j));
+    text += '\n';
+  }
+  text += fmt::format("  {:>10} |", "");
+  for (double weight : tableau.b) text += fmt::format(" {:>10.6g}", weight);
+  return text + '\n';
+}
+
+std::string describe_method(const catalog::MethodEntry& entry) {
+  const MethodInfo& info = entry.info;
+  std::string text = fmt::format("{}\n{}\n\n", info.name, info.title);
+  const auto line = [&](const char* label, const std::string& value) { text += fmt::format("  {:<24} {}\n", label, value); };
+  line("family", info.family);
+  line("one step", info.formula);
+  line("order", info.order == 0 ? "variable" : std::to_string(info.order));
+  line("order with dampers", info.order_with_velocity_forces == 0 ? "variable" : std::to_string(info.order_with_velocity_forces));
+  line("stages", std::to_string(info.stages));
+  line("kind", info.is_explicit ? "explicit" : "implicit");
+  line("step", info.is_adaptive ? "adaptive (--rtol, --atol)" : info.is_multistep ? "fixed, the interval has to be a whole number of steps" : "fixed (--step)");
+  line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");
+  line("linear stability", info.is_l_stable ? "A-stable, L-stable" : info.is_a_stable ? "A-stable" : "conditional");
+  line("works on", info.needs_second_order ? "M q'' = f(t, q, q')" : "y' = f(t, y)");
+  line("literature", info.reference);
+  if (!entry.options.empty()) {
+    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name, entry.options.front().default_value);
+    for (const catalog::OptionInfo& option : entry.options) {
+      text += fmt::format("  {:<24} {} (default {})\n", option.name, option.expected, option.default_value);
+    }
+  }
+  if (const auto* tableau = find_tableau(info.name)) text += tableau_text(*tableau);
+  return text;
+}
+
+std::string describe_problem(const ProblemEntry& entry) {
+  const Problem problem = entry.make({});
+  std::string text = fmt::format("{}\n{}\n\n", problem.name, problem.title);
+  const auto line = [&](const char* label, const std::string& value) { text += fmt::format("  {:<24} {}\n", label, value); };
+  line("equations", problem.description);
+  line("unknowns", std::to_string(problem.ivp.system->size()));
+  line("interval", fmt::format("[{}, {}] s", problem.ivp.t0, problem.ivp.t1));
+  line("largest |eigenvalue|", fmt::format("{:.6g} 1/s", problem.stiffness));
+  line("right-hand side", problem.is_smooth ? "smooth" : "has kinks");
+  line("solution", problem.exact ? "closed form" : "certified reference in binary128");
+  std::string names;
+  for (const Invariant& invariant : problem.invariants) names += (names.empty() ? "" : ", ") + invariant.name;
+  line("invariants", names.empty() ? "none" : names);
+  line("literature", problem.source);
+  if (!entry.defaults.empty()) {
+    text += "\nParameters\n";
+    for (const auto& [name, value] : entry.defaults) text += fmt::format("  {:<24} {}\n", name, value);
+  }
+  return text;
+}
+
+std::string method_json(const catalog::MethodEntry& entry) {
+  const MethodInfo& info = entry.info;
+  JsonWriter json;
+  json.begin_object();
+  json.key("type").value("method").key("name").value(info.name).key("title").value(info.title);
+  json.key("family").value(info.family).key("formula").value(info.formula);
+  json.key("order").value(std::int64_t{info.order});
+  json.key("order_with_velocity_forces").value(std::int64_t{info.order_with_velocity_forces});
+  json.key("stages").value(std::int64_t{info.stages}).key("explicit").value(info.is_explicit);
+  json.key("multistep").value(info.is_multistep).key("adaptive").value(info.is_adaptive);
+  json.key("symplectic").value(info.is_symplectic).key("a_stable").value(info.is_a_stable);
+  json.key("l_stable").value(info.is_l_stable).key("reference").value(info.reference);
+  json.key("options").begin_array();
+  for (const catalog::OptionInfo& option : entry.options) {
+    json.begin_object().key("name").value(option.name).key("default").value(option.default_value);
+    json.key("expected").value(option.expected).end_object();
+  }
+  json.end_array();
+  if (const auto* tableau = find_tableau(info.name)) {
+    const auto row = [&](const auto& values) {
+      json.begin_array();
+      for (Index i = 0; i < values.size(); ++i) json.value(values[i]);
+      json.end_array();
+    };
+    json.key("tableau").begin_object().key("A").begin_array();
+    for (Index i = 0; i < tableau->A.rows(); ++i) row(Vector(tableau->A.row(i)));
+    json.end_array().key("b");
+    row(tableau->b);
+    json.key("c");
+    row(tableau->c);
+    json.end_object();
+  }
+  json.end_object();
+  return json.text() + "\n";
+}
+
+std::string problem_json(const ProblemEntry& entry) {
+  const Problem problem = entry.make({});
+  JsonWriter json;
+  json.begin_object();
+  json.key("type").value("problem").key("name").value(problem.name).key("title").value(problem.title);
+  json.key("description").value(problem.description).key("reference").value(problem.source);
+  json.key("size").value(std::int64_t{problem.ivp.system->size()});
+  json.key("t0").value(problem.ivp.t0).key("t1").value(problem.ivp.t1);
+  json.key("stiffness").value(problem.stiffness).key("smooth").value(problem.is_smooth);
+  json.key("exact_solution").value(static_cast<bool>(problem.exact));
+  json.key("invariants").begin_array();
+  for (const Invariant& invariant : problem.invariants) json.value(invariant.name);
+  json.end_array().key("parameters").begin_object();
+  for (const auto& [name, value] : entry.defaults) json.key(name).value(value);
+  json.end_object().end_object();
+  return json.text() + "\n";
+}
+
+std::string describe(const std::string& name, bool as_json) {
+  std::vector<std::string> names;
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    if (entry.info.name == name) return as_json ? method_json(entry) : describe_method(entry);
+    names.push_back(entry.info.name);
+  }
+  for (const ProblemEntry& entry : catalog::problems()) {
+    if (entry.name == name) return as_json ? problem_json(entry) : describe_problem(entry);
+    names.push_back(entry.name);
+  }
+  for (const study::StudyKind& kind : catalog::study_kinds()) {
+    if (kind.name == name) {
+      if (!as_json) return fmt::format("{}\n{}\n\n  {}\n", kind.name, kind.title, kind.description);
+      JsonWriter json;
+      json.begin_object().key("type").value("study").key("name").value(kind.name).key("title").value(kind.title);
+      json.key("description").value(kind.description).end_object();
+      return json.text() + "\n";
+    }
+    names.push_back(kind.name);
+  }
+  throw InputError(fmt::format("unknown name \"{}\"{}; \"federwerk list methods\" and \"federwerk list problems\" show all",
+                               name, did_you_mean(name, names)));
+}
+
+}  // namespace
+
+void add_describe_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("describe", "Prints all that is known of one method, problem or study kind");
+  auto name = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("name", *name, "Its name")->required()->type_name("NAME");
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([name, json, &action] {
+    action = [name, json] {
+      fmt::print("{}", describe(*name, *json));
+      return exit_success;
+    };
+  });
+}
+
+}  // namespace fw::app

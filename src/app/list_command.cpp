@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "catalog/methods.hpp"
+#include "catalog/problems.hpp"
+#include "catalog/study_kinds.hpp"
+#include "scene/generated_system.hpp"
+#include "store/json_writer.hpp"
+#include "store/text_table.hpp"
+
+namespace fw::app {
+
+namespace {
+
+using store::JsonWriter;
+using store::TextTable;
+
+const std::string oracle_family = "oracle";
+
+std::string order_text(const MethodInfo& info) {
+  if (info.order == 0) return "variable";
+  if (info.order == info.order_with_velocity_forces) return std::to_string(info.order);
+  return fmt::format("{} ({} with dampers)", info.order, info.order_with_velocity_forces);
+}
+
+std::string yes_or_blank(bool value) { return value ? "yes" : ""; }
+
+std::string methods_json(bool only_oracles) {
+  JsonWriter json;
+  json.begin_array();
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    const MethodInfo& info = entry.info;
+    if (only_oracles && info.family != oracle_family) continue;
+    json.begin_object();
+    json.key("name").value(info.name).key("title").value(info.title).key("family").value(info.family);
+    json.key("order").value(std::int64_t{info.order});
+    json.key("order_with_velocity_forces").value(std::int64_t{info.order_with_velocity_forces});
+    json.key("stages").value(std::int64_t{info.stages});
+    json.key("explicit").value(info.is_explicit).key("multistep").value(info.is_multistep);
+    json.key("adaptive").value(info.is_adaptive).key("symplectic").value(info.is_symplectic);
+    json.key("a_stable").value(info.is_a_stable).key("l_stable").value(info.is_l_stable);
+    json.key("needs_second_order").value(info.needs_second_order);
+    json.key("reference").value(info.reference);
+    json.end_object();
+  }
+  json.end_array();
+  return json.text() + "\n";
+}
+
+std::string methods_table(bool only_oracles) {
+  std::vector<std::string> name, order, stages, kind, steps, symplectic, stable, title;
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    const MethodInfo& info = entry.info;
+    if (only_oracles && info.family != oracle_family) continue;
+    name.push_back(info.name);
+    order.push_back(order_text(info));
+    stages.push_back(std::to_string(info.stages));
+    kind.push_back(info.is_explicit ? "explicit" : "implicit");
+    steps.push_back(info.is_adaptive ? "adaptive" : "fixed");
+    symplectic.push_back(yes_or_blank(info.is_symplectic));
+    stable.push_back(info.is_l_stable ? "L" : info.is_a_stable ? "A" : "");
+    title.push_back(info.title);
+  }
+  TextTable table;
+  table.add_column("name", TextTable::Align::left, name);
+  table.add_column("order", TextTable::Align::left, order);
+  table.add_column("stages", TextTable::Align::right, stages);
+  table.add_column("kind", TextTable::Align::left, kind);
+  table.add_column("step", TextTable::Align::left, steps);
+  table.add_column("symplectic", TextTable::Align::left, symplectic);
+  table.add_column("stable", TextTable::Align::left, stable);
+  table.add_column("title", TextTable::Align::left, title);
+  return table.text();
+}
+
+/// Entries of name, title and description, as JSON or as a table.
+struct Line {
+  std::string name, title, description;
+};
+
+std::string lines_text(const std::vector<Line>& lines, bool as_json) {
+  if (as_json) {
+    JsonWriter json;
+    json.begin_array();
+    for (const Line& line : lines) {
+      json.begin_object();
+      json.key("name").value(line.name).key("title").value(line.title).key("description").value(line.description);
+      json.end_object();
+    }
+    json.end_array();
+    return json.text() + "\n";
+  }
+  std::vector<std::string> names, titles;
+  for (const Line& line : lines) {
+    names.push_back(line.name);
+    titles.push_back(line.title);
+  }
+  TextTable table;
+  table.add_column("name", TextTable::Align::left, names);
+  table.add_column("title", TextTable::Align::left, titles);
+  return table.text();
+}
+
+std::vector<Line> problem_lines() {
+  std::vector<Line> lines;
+  for (const ProblemEntry& entry : catalog::problems()) {
+    const Problem problem = entry.make({});
+    lines.push_back({problem.name, problem.title, problem.description});
+  }
+  return lines;
+}
+
+std::vector<Line> study_lines() {
+  std::vector<Line> lines;
+  for (const study::StudyKind& kind : catalog::study_kinds()) lines.push_back({kind.name, kind.title, kind.description});
+  return lines;
+}
+
+std::vector<Line> scene_lines() {
+  std::vector<Line> lines;
+  for (const scene::GeneratorInfo& generator : scene::generators()) {
+    lines.push_back({generator.name, generator.title, generator.description});
+  }
+  return lines;
+}
+
+std::string list(const std::string& what, bool as_json) {
+  if (what == "methods") return as_json ? methods_json(false) : methods_table(false);
+  if (what == "oracles") return as_json ? methods_json(true) : methods_table(true);
+  if (what == "problems") return lines_text(problem_lines(), as_json);
+  if (what == "scenes") return lines_text(scene_lines(), as_json);
+  return lines_text(study_lines(), as_json);
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("list", "Lists methods, problems, scenes, studies or oracles");
+  auto what = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  command->add_option("what", *what, "What to list")
+      ->required()
+      ->check(CLI::IsMember({"methods", "problems", "scenes", "studies", "oracles"}))
+      ->type_name("methods|problems|scenes|studies|oracles");
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([what, json, &action] {
+    action = [what, json] {
+      fmt::print("{}", list(*what, *json));
+      return exit_success;
+    };
+  });
+}
+
+}  // namespace fw::app

@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "app/progress_bar.hpp"
+#include "catalog/methods.hpp"
+#include "core/error.hpp"
+#include "mechanics/mass_spring_system.hpp"
+#include "scene/scene.hpp"
+#include "store/mass_spring_quantities.hpp"
+#include "store/trajectory_writer.hpp"
+#include "store/write_target.hpp"
+#include "store/xdmf.hpp"
+#include "study/frame_selector.hpp"
+
+namespace fw::app {
+
+namespace {
+
+struct SimulateArguments {
+  std::string scene, method, output;
+  double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0;
+  bool has_step = false, has_relative = false, has_absolute = false, xdmf = false;
+  std::uint64_t frames = 101;
+};
+
+/// Passes steps on to the frames, shows progress and listens to the user's interrupt.
+class SimulationObserver final : public Observer {
+ public:
+  SimulationObserver(study::FrameSelector& frames, double end_time, const std::atomic<bool>& interrupted)
+      : frames_(frames), end_time_(end_time), interrupted_(interrupted), bar_("steps") {}
+
+  bool observe(const StepView& view) override {
+    frames_.observe(view);
+    if (bar_.is_visible() && view.index % 16 == 0) {
+      bar_.update(view.time / end_time_, static_cast<double>(view.index), fmt::format("t = {:.4g} s", view.time));
+    }
+    return !interrupted_.load(std::memory_order_relaxed);
+  }
+  void finish() { bar_.clear(); }
+
+ private:
+  study::FrameSelector& frames_;
+  double end_time_;
+  const std::atomic<bool>& interrupted_;
+  ProgressBar bar_;
+};
+
+StepControl step_control(const SimulateArguments& arguments, const MethodInfo& info) {
+  const bool has_tolerances = arguments.has_relative || arguments.has_absolute;
+  if (arguments.has_step && has_tolerances) throw InputError("found --step and tolerances, expected either --step or --rtol and --atol");
+  if (info.is_adaptive) {
+    if (arguments.has_step) {
+      throw InputError(fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
+    }
+    if (!arguments.has_relative || !arguments.has_absolute) {
+      throw InputError(fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol", info.name));
+    }
+    const auto check = [](const char* option, double value) {
+      if (!std::isfinite(value) || value <= 0.0) {
+        throw InputError(fmt::format("{}: found {}, expected a finite number > 0", option, value));
+      }
+    };
+    check("--rtol", arguments.relative_tolerance);
+    check("--atol", arguments.absolute_tolerance);
+    return AdaptiveStep{.relative_tolerance = arguments.relative_tolerance,
+                        .absolute_tolerance = arguments.absolute_tolerance};
+  }
+  if (!arguments.has_step) {
+    throw InputError(fmt::format("method \"{}\" has a fixed step: expected --step", info.name));
+  }
+  if (!std::isfinite(arguments.step) || arguments.step <= 0.0) {
+    throw InputError(fmt::format("--step: found {}, expected a finite number > 0", arguments.step));
+  }
+  return FixedStep{.step = arguments.step};
+}
+
+/// Tells of a shorter last step, or refuses it for multistep methods, before anything is computed.
+void check_last_step(const StepControl& control, const MethodInfo& info, double end_time) {
+  const auto* fixed = std::get_if<FixedStep>(&control);
+  if (fixed == nullptr) return;
+  const StepCount count = count_steps(0.0, end_time, fixed->step);
+  if (count.remainder > 0.0 && !info.is_multistep) {
+    fmt::print(stderr, "federwerk: note: the end time {} is not a whole number of steps {}; the last step is {:.6g} s\n",
+               end_time, fixed->step, count.remainder);
+  }
+}
+
+std::string default_output(const SimulateArguments& arguments) {
+  std::string method = arguments.method;
+  for (char& letter : method) {
+    if (!std::isalnum(static_cast<unsigned char>(letter)) && letter != '_' && letter != '-') letter = '_';
+  }
+  return std::filesystem::path(arguments.scene).stem().string() + "-" + method + ".h5";
+}
+
+void print_summary(const std::string& output, const Solution& solution, const study::FrameSelector& frames,
+                   std::uint64_t degenerate) {
+  fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output, frames.written(),
+             solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
+  if (degenerate > 0) {
+    fmt::print(stderr,
+               "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its force was "
+               "taken as zero\n",
+               degenerate);
+  }
+}
+
+int simulate(SimulateArguments arguments, const std::string& command_line) {
+  const std::unique_ptr<Integrator> integrator = catalog::make_method(arguments.method);
+  const StepControl control = step_control(arguments, integrator->info());
+  if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
+    throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
+  }
+  if (arguments.frames < 2) throw InputError(fmt::format("--frames: found {}, expected at least 2", arguments.frames));
+  if (const auto* fixed = std::get_if<FixedStep>(&control)) count_steps(0.0, arguments.end_time, fixed->step);
+  if (arguments.output.empty()) arguments.output = default_output(arguments);
+  store::check_writable_target(arguments.output);
+  if (arguments.xdmf) store::check_writable_place(std::filesystem::path(arguments.output).replace_extension(".xdmf"));
+
+  scene::Scene scene = scene::read_scene(arguments.scene);
+  for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
+  const store::FileHeader header{.kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
+  Ivp ivp;
+  ivp.y0 = initial_state(scene);
+  ivp.t1 = arguments.end_time;
+  scene.position.resize(0);
+  scene.velocity.resize(0);
+  const auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
+  ivp.system = system;
+  if (integrator->info().needs_second_order && ivp.system->second_order() == nullptr) {
+    throw InputError("the scene is no second-order system");
+  }
+  check_last_step(control, integrator->info(), arguments.end_time);
+
+  const std::atomic<bool>& interrupted = install_interrupt_flag();
+  const StepCount count = std::holds_alternative<FixedStep>(control)
+                              ? count_steps(0.0, arguments.end_time, std::get<FixedStep>(control).step)
+                              : StepCount{};
+  const std::uint64_t expected =
+      std::holds_alternative<FixedStep>(control) ? std::min(arguments.frames, count.total() + 1) : arguments.frames;
+  store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
+                                 static_cast<Index>(expected));
+  study::FrameSelector frames(ivp.t0, ivp.t1, control, arguments.frames, writer);
+  SimulationObserver observer(frames, arguments.end_time, interrupted);
+  Solution solution = integrator->solve(ivp, control, observer);
+  observer.finish();
+  if (solution.status.code == StatusCode::stopped_by_observer && interrupted) {
+    solution.status = {StatusCode::interrupted, fmt::format("interrupted by the user at t = {:.6g}", solution.time)};
+  }
+  writer.finish(solution.status, solution.work);
+  if (arguments.xdmf) store::write_xdmf(arguments.output);
+  print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
+  if (!solution.status.ok()) {
+    fmt::print(stderr, "federwerk: {}; what was computed is in {}\n", solution.status.describe(), arguments.output);
+    return exit_failure;
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, Action& action, const std::string& command_line) {
+  CLI::App* command = app.add_subcommand("simulate", "Simulates one scene with one method into an HDF5 file");
+  auto arguments = std::make_shared<SimulateArguments>();
+  command->add_option("scene", arguments->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
+  command->add_option("--method", arguments->method, "Method, for example rk4; see \"federwerk list methods\"")->required()->type_name("NAME");
+  CLI::Option* step = command->add_option("--step", arguments->step, "Step [s] of a fixed-step method")->type_name("H");
+  CLI::Option* relative = command->add_option("--rtol", arguments->relative_tolerance, "Relative tolerance of an adaptive method")->type_name("R");
+  CLI::Option* absolute = command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")->type_name("A");
+  command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->required()->type_name("T");
+  command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")->capture_default_str()->type_name("N");
+  command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")->type_name("FILE.h5");
+  command->add_flag("--xdmf", arguments->xdmf, "Also write FILE.xdmf, which ParaView opens");
+  command->callback([arguments, step, relative, absolute, &action, command_line] {
+    arguments->has_step = step->count() > 0;
+    arguments->has_relative = relative->count() > 0;
+    arguments->has_absolute = absolute->count() > 0;
+    action = [arguments, command_line] { return simulate(*arguments, command_line); };
+  });
+}
+
+}  // namespace fw::app
