@@ -48,8 +48,9 @@ OrderFit fit_order(std::span<const double> steps, std::span<const double> errors
   fit.used.assign(errors.size(), 0);
   auto [first, last] = monotone_range(errors, floor);
   const auto give_up = [&](std::size_t points) {
-    fit.reason = fmt::format("{} of {} points are in the asymptotic range above the floor {:.2g}, expected at least {}",
-                             points, errors.size(), floor, minimum_fit_points);
+    fit.reason = fmt::format(
+        "{} of {} points are in the asymptotic range above the floor {:.2g}, expected at least {}", points,
+        errors.size(), floor, minimum_fit_points);
     return fit;
   };
   if (last - first < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - first);
@@ -76,15 +77,15 @@ OrderFit fit_order(std::span<const double> steps, std::span<const double> errors
 
   const std::size_t n = last - begin;
   double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, sum_squares = 0.0;
-  gsl_fit_linear(log_step.data() + begin, 1, log_error.data() + begin, 1, n, &intercept, &fit.order, &cov00, &cov01,
-                 &cov11, &sum_squares);
+  gsl_fit_linear(log_step.data() + begin, 1, log_error.data() + begin, 1, n, &intercept, &fit.order, &cov00,
+                 &cov01, &cov11, &sum_squares);
   const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * std::sqrt(cov11);
   fit.order_low = fit.order - half_width;
   fit.order_high = fit.order + half_width;
   fit.correlation = gsl_stats_correlation(log_step.data() + begin, 1, log_error.data() + begin, 1, n);
   fit.points = static_cast<int>(n);
-  std::fill(fit.used.begin() + static_cast<std::ptrdiff_t>(begin), fit.used.begin() + static_cast<std::ptrdiff_t>(last),
-            char{1});
+  std::fill(fit.used.begin() + static_cast<std::ptrdiff_t>(begin),
+            fit.used.begin() + static_cast<std::ptrdiff_t>(last), char{1});
   fit.valid = true;
   return fit;
 }

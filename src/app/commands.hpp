@@ -7,15 +7,16 @@
 namespace fw::app {
 
 /// Exit codes of the shell command.
-inline constexpr int exit_success = 0;         ///< done, all verdicts hold
-inline constexpr int exit_verdict_fails = 1;   ///< done, but a verdict fails
-inline constexpr int exit_bad_input = 2;       ///< bad usage or input, nothing written
-inline constexpr int exit_failure = 3;         ///< numerical or system failure, what was finished is kept
+inline constexpr int exit_success = 0;        ///< done, all verdicts hold
+inline constexpr int exit_verdict_fails = 1;  ///< done, but a verdict fails
+inline constexpr int exit_bad_input = 2;      ///< bad usage or input, nothing written
+inline constexpr int exit_failure = 3;        ///< numerical or system failure, what was finished is kept
 
 /// What a subcommand does after parsing; returns the exit code.
 using Action = std::function<int()>;
 
-/// Each adds its subcommand to `app` and sets `action` when it was chosen. `command_line` is what the user typed.
+/// Each adds its subcommand to `app` and sets `action` when it was chosen. `command_line` is what the user
+/// typed.
 void add_list_command(CLI::App& app, Action& action);
 void add_describe_command(CLI::App& app, Action& action);
 void add_simulate_command(CLI::App& app, Action& action, const std::string& command_line);

@@ -41,20 +41,28 @@ std::string tableau_text(const integrators::ButcherTableau& tableau) {
 std::string describe_method(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info;
   std::string text = fmt::format("{}\n{}\n\n", info.name, info.title);
-  const auto line = [&](const char* label, const std::string& value) { text += fmt::format("  {:<24} {}\n", label, value); };
+  const auto line = [&](const char* label, const std::string& value) {
+    text += fmt::format("  {:<24} {}\n", label, value);
+  };
   line("family", info.family);
   line("one step", info.formula);
   line("order", info.order == 0 ? "variable" : std::to_string(info.order));
-  line("order with dampers", info.order_with_velocity_forces == 0 ? "variable" : std::to_string(info.order_with_velocity_forces));
+  line("order with dampers",
+       info.order_with_velocity_forces == 0 ? "variable" : std::to_string(info.order_with_velocity_forces));
   line("stages", std::to_string(info.stages));
   line("kind", info.is_explicit ? "explicit" : "implicit");
-  line("step", info.is_adaptive ? "adaptive (--rtol, --atol)" : info.is_multistep ? "fixed, the interval has to be a whole number of steps" : "fixed (--step)");
+  line("step", info.is_adaptive    ? "adaptive (--rtol, --atol)"
+               : info.is_multistep ? "fixed, the interval has to be a whole number of steps"
+                                   : "fixed (--step)");
   line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");
-  line("linear stability", info.is_l_stable ? "A-stable, L-stable" : info.is_a_stable ? "A-stable" : "conditional");
+  line("linear stability", info.is_l_stable   ? "A-stable, L-stable"
+                           : info.is_a_stable ? "A-stable"
+                                              : "conditional");
   line("works on", info.needs_second_order ? "M q'' = f(t, q, q')" : "y' = f(t, y)");
   line("literature", info.reference);
   if (!entry.options.empty()) {
-    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name, entry.options.front().default_value);
+    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name,
+                        entry.options.front().default_value);
     for (const catalog::OptionInfo& option : entry.options) {
       text += fmt::format("  {:<24} {} (default {})\n", option.name, option.expected, option.default_value);
     }
@@ -66,7 +74,9 @@ std::string describe_method(const catalog::MethodEntry& entry) {
 std::string describe_problem(const ProblemEntry& entry) {
   const Problem problem = entry.make({});
   std::string text = fmt::format("{}\n{}\n\n", problem.name, problem.title);
-  const auto line = [&](const char* label, const std::string& value) { text += fmt::format("  {:<24} {}\n", label, value); };
+  const auto line = [&](const char* label, const std::string& value) {
+    text += fmt::format("  {:<24} {}\n", label, value);
+  };
   line("equations", problem.description);
   line("unknowns", std::to_string(problem.ivp.system->size()));
   line("interval", fmt::format("[{}, {}] s", problem.ivp.t0, problem.ivp.t1));
@@ -152,20 +162,23 @@ std::string describe(const std::string& name, bool as_json) {
     if (kind.name == name) {
       if (!as_json) return fmt::format("{}\n{}\n\n  {}\n", kind.name, kind.title, kind.description);
       JsonWriter json;
-      json.begin_object().key("type").value("study").key("name").value(kind.name).key("title").value(kind.title);
+      json.begin_object().key("type").value("study").key("name").value(kind.name).key("title").value(
+          kind.title);
       json.key("description").value(kind.description).end_object();
       return json.text() + "\n";
     }
     names.push_back(kind.name);
   }
-  throw InputError(fmt::format("unknown name \"{}\"{}; \"federwerk list methods\" and \"federwerk list problems\" show all",
-                               name, did_you_mean(name, names)));
+  throw InputError(fmt::format(
+      "unknown name \"{}\"{}; \"federwerk list methods\" and \"federwerk list problems\" show all", name,
+      did_you_mean(name, names)));
 }
 
 }  // namespace
 
 void add_describe_command(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("describe", "Prints all that is known of one method, problem or study kind");
+  CLI::App* command =
+      app.add_subcommand("describe", "Prints all that is known of one method, problem or study kind");
   auto name = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   command->add_option("name", *name, "Its name")->required()->type_name("NAME");

@@ -7,7 +7,7 @@
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "catalog/study_kinds.hpp"
-#include "scene/generated_system.hpp"
+#include "scene/generators.hpp"
 #include "store/json_writer.hpp"
 #include "store/text_table.hpp"
 
@@ -26,7 +26,9 @@ std::string order_text(const MethodInfo& info) {
   return fmt::format("{} ({} with dampers)", info.order, info.order_with_velocity_forces);
 }
 
-std::string yes_or_blank(bool value) { return value ? "yes" : ""; }
+std::string yes_or_blank(bool value) {
+  return value ? "yes" : "";
+}
 
 std::string methods_json(bool only_oracles) {
   JsonWriter json;
@@ -87,7 +89,12 @@ std::string lines_text(const std::vector<Line>& lines, bool as_json) {
     json.begin_array();
     for (const Line& line : lines) {
       json.begin_object();
-      json.key("name").value(line.name).key("title").value(line.title).key("description").value(line.description);
+      json.key("name")
+          .value(line.name)
+          .key("title")
+          .value(line.title)
+          .key("description")
+          .value(line.description);
       json.end_object();
     }
     json.end_array();
@@ -115,7 +122,8 @@ std::vector<Line> problem_lines() {
 
 std::vector<Line> study_lines() {
   std::vector<Line> lines;
-  for (const study::StudyKind& kind : catalog::study_kinds()) lines.push_back({kind.name, kind.title, kind.description});
+  for (const study::StudyKind& kind : catalog::study_kinds())
+    lines.push_back({kind.name, kind.title, kind.description});
   return lines;
 }
 

@@ -15,7 +15,8 @@ std::string join_arguments(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) {
     const std::string argument = argv[i];
     if (!text.empty()) text += ' ';
-    const bool needs_quotes = argument.empty() || argument.find_first_of(" \t'\"$`\\[]*?&;|<>()") != std::string::npos;
+    const bool needs_quotes =
+        argument.empty() || argument.find_first_of(" \t'\"$`\\[]*?&;|<>()") != std::string::npos;
     text += needs_quotes ? "'" + argument + "'" : argument;
   }
   return text;

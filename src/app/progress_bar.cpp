@@ -29,7 +29,9 @@ std::string magnitude(double value) {
 ProgressBar::ProgressBar(std::string unit)
     : unit_(std::move(unit)), is_terminal_(isatty(STDERR_FILENO) == 1), start_(Clock::now()), last_(start_) {}
 
-ProgressBar::~ProgressBar() { clear(); }
+ProgressBar::~ProgressBar() {
+  clear();
+}
 
 void ProgressBar::update(double fraction, double count, const std::string& label) {
   if (!is_terminal_) return;
@@ -40,7 +42,8 @@ void ProgressBar::update(double fraction, double count, const std::string& label
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const int filled = static_cast<int>(fraction * bar_width);
   const std::string left = fraction > 0.0 ? duration(elapsed * (1.0 - fraction) / fraction) : "?";
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}{}/s  {} left  {}", std::string(static_cast<std::size_t>(filled), '#'),
+  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}{}/s  {} left  {}",
+             std::string(static_cast<std::size_t>(filled), '#'),
              std::string(static_cast<std::size_t>(bar_width - filled), '.'), 100.0 * fraction,
              magnitude(count / std::max(elapsed, 1e-9)), unit_, left, label);
   std::fflush(stderr);

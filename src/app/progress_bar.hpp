@@ -13,7 +13,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws at most ten times a second. `fraction` in [0, 1], `count` in units, `label` at the end of the line.
+  /// Draws at most ten times a second. `fraction` in [0, 1], `count` in units, `label` at the end of the
+  /// line.
   void update(double fraction, double count, const std::string& label);
   /// Removes the bar, so that other text can be printed.
   void clear();

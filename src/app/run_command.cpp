@@ -7,10 +7,10 @@
 #include <memory>
 #include <set>
 
+#include "analysis/reference_cache.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
-#include "analysis/reference_cache.hpp"
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
@@ -49,10 +49,13 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
   std::set<std::filesystem::path> outputs;
   for (const std::string& path : arguments.studies) {
     const CheckedTable spec = CheckedTable::parse_file(path);
-    PlannedStudy study{std::filesystem::path(arguments.directory) / std::filesystem::path(path).stem().concat(".h5"),
-                       study::read_plan(spec, catalog::study_kinds(), catalog, arguments.quick)};
+    PlannedStudy study{
+        std::filesystem::path(arguments.directory) / std::filesystem::path(path).stem().concat(".h5"),
+        study::read_plan(spec, catalog::study_kinds(), catalog, arguments.quick)};
     if (!outputs.insert(study.output).second) {
-      throw InputError(fmt::format("{}: another study of this run also writes {}; expected different file names", path, study.output.string()));
+      throw InputError(
+          fmt::format("{}: another study of this run also writes {}; expected different file names", path,
+                      study.output.string()));
     }
     studies.push_back(std::move(study));
   }
@@ -65,14 +68,15 @@ struct Tally {
 
 Tally run_study(const PlannedStudy& planned, const RunArguments& arguments, const std::string& command_line,
                 const std::string& program, const std::atomic<bool>& interrupted, bool& complete) {
-  store::StudyStore store(planned.output,
-                          arguments.force ? store::StudyStore::Earlier::forget : store::StudyStore::Earlier::reuse);
+  store::StudyStore store(planned.output, arguments.force ? store::StudyStore::Earlier::forget
+                                                          : store::StudyStore::Earlier::reuse);
   fmt::print("{} ({} cases)\n", planned.plan.title, planned.plan.cases.size());
   ProgressBar bar("cases");
   Tally tally;
   std::size_t done = 0;
   study::RunOptions options;
-  options.context = {.interrupted = &interrupted, .reference_cache = analysis::ReferenceCache::default_directory()};
+  options.context = {.interrupted = &interrupted,
+                     .reference_cache = analysis::ReferenceCache::default_directory()};
   options.program = program;
   options.force = arguments.force;
   options.jobs = arguments.jobs;
@@ -95,17 +99,20 @@ Tally run_study(const PlannedStudy& planned, const RunArguments& arguments, cons
   bar.clear();
   store.write(command_line, result);
   complete = result.complete;
-  fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds, tally.fails,
-             tally.not_applicable, tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
+  fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds,
+             tally.fails, tally.not_applicable,
+             tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
   return tally;
 }
 
 int run(const RunArguments& arguments, const std::string& command_line) {
-  if (arguments.jobs < 1) throw InputError(fmt::format("--jobs: found {}, expected at least 1", arguments.jobs));
+  if (arguments.jobs < 1)
+    throw InputError(fmt::format("--jobs: found {}, expected at least 1", arguments.jobs));
   const std::vector<PlannedStudy> studies = read_studies(arguments);
   std::error_code error;
   std::filesystem::create_directories(arguments.directory, error);
-  if (error) throw InputError(fmt::format("{}: cannot make this directory: {}", arguments.directory, error.message()));
+  if (error)
+    throw InputError(fmt::format("{}: cannot make this directory: {}", arguments.directory, error.message()));
   const std::atomic<bool>& interrupted = install_interrupt_flag();
   const std::string program = program_identity();
   std::size_t fails = 0;
@@ -113,7 +120,8 @@ int run(const RunArguments& arguments, const std::string& command_line) {
     bool complete = true;
     fails += run_study(planned, arguments, command_line, program, interrupted, complete).fails;
     if (interrupted) {
-      fmt::print(stderr, "federwerk: interrupted; finished cases are kept, the same command goes on from here\n");
+      fmt::print(stderr,
+                 "federwerk: interrupted; finished cases are kept, the same command goes on from here\n");
       return exit_failure;
     }
   }
@@ -126,8 +134,14 @@ void add_run_command(CLI::App& app, Action& action, const std::string& command_l
   CLI::App* command = app.add_subcommand("run", "Runs studies; finished cases are kept and not run again");
   auto arguments = std::make_shared<RunArguments>();
   command->add_option("study", arguments->studies, "Study files (TOML)")->required()->type_name("STUDY.toml");
-  command->add_option("-o,--output", arguments->directory, "Directory for result files")->capture_default_str()->type_name("DIR");
-  command->add_option("--jobs", arguments->jobs, "Cases that run at the same time; timings are honest with 1 only")->capture_default_str()->type_name("N");
+  command->add_option("-o,--output", arguments->directory, "Directory for result files")
+      ->capture_default_str()
+      ->type_name("DIR");
+  command
+      ->add_option("--jobs", arguments->jobs,
+                   "Cases that run at the same time; timings are honest with 1 only")
+      ->capture_default_str()
+      ->type_name("N");
   command->add_flag("--quick", arguments->quick, "Shrink each study by its own [quick] section");
   command->add_flag("--force", arguments->force, "Run also the cases that are finished");
   command->callback([arguments, &action, command_line] {

@@ -38,7 +38,8 @@ class SimulationObserver final : public Observer {
   bool observe(const StepView& view) override {
     frames_.observe(view);
     if (bar_.is_visible() && view.index % 16 == 0) {
-      bar_.update(view.time / end_time_, static_cast<double>(view.index), fmt::format("t = {:.4g} s", view.time));
+      bar_.update(view.time / end_time_, static_cast<double>(view.index),
+                  fmt::format("t = {:.4g} s", view.time));
     }
     return !interrupted_.load(std::memory_order_relaxed);
   }
@@ -53,13 +54,16 @@ class SimulationObserver final : public Observer {
 
 StepControl step_control(const SimulateArguments& arguments, const MethodInfo& info) {
   const bool has_tolerances = arguments.has_relative || arguments.has_absolute;
-  if (arguments.has_step && has_tolerances) throw InputError("found --step and tolerances, expected either --step or --rtol and --atol");
+  if (arguments.has_step && has_tolerances)
+    throw InputError("found --step and tolerances, expected either --step or --rtol and --atol");
   if (info.is_adaptive) {
     if (arguments.has_step) {
-      throw InputError(fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
+      throw InputError(
+          fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
     }
     if (!arguments.has_relative || !arguments.has_absolute) {
-      throw InputError(fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol", info.name));
+      throw InputError(
+          fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol", info.name));
     }
     const auto check = [](const char* option, double value) {
       if (!std::isfinite(value) || value <= 0.0) {
@@ -86,8 +90,10 @@ void check_last_step(const StepControl& control, const MethodInfo& info, double 
   if (fixed == nullptr) return;
   const StepCount count = count_steps(0.0, end_time, fixed->step);
   if (count.remainder > 0.0 && !info.is_multistep) {
-    fmt::print(stderr, "federwerk: note: the end time {} is not a whole number of steps {}; the last step is {:.6g} s\n",
-               end_time, fixed->step, count.remainder);
+    fmt::print(
+        stderr,
+        "federwerk: note: the end time {} is not a whole number of steps {}; the last step is {:.6g} s\n",
+        end_time, fixed->step, count.remainder);
   }
 }
 
@@ -101,11 +107,13 @@ std::string default_output(const SimulateArguments& arguments) {
 
 void print_summary(const std::string& output, const Solution& solution, const study::FrameSelector& frames,
                    std::uint64_t degenerate) {
-  fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output, frames.written(),
-             solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
+  fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output,
+             frames.written(), solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations,
+             solution.work.seconds);
   if (degenerate > 0) {
     fmt::print(stderr,
-               "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its force was "
+               "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its "
+               "force was "
                "taken as zero\n",
                degenerate);
   }
@@ -117,15 +125,18 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
     throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
   }
-  if (arguments.frames < 2) throw InputError(fmt::format("--frames: found {}, expected at least 2", arguments.frames));
+  if (arguments.frames < 2)
+    throw InputError(fmt::format("--frames: found {}, expected at least 2", arguments.frames));
   if (const auto* fixed = std::get_if<FixedStep>(&control)) count_steps(0.0, arguments.end_time, fixed->step);
   if (arguments.output.empty()) arguments.output = default_output(arguments);
   store::check_writable_target(arguments.output);
-  if (arguments.xdmf) store::check_writable_place(std::filesystem::path(arguments.output).replace_extension(".xdmf"));
+  if (arguments.xdmf)
+    store::check_writable_place(std::filesystem::path(arguments.output).replace_extension(".xdmf"));
 
   scene::Scene scene = scene::read_scene(arguments.scene);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
-  const store::FileHeader header{.kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
+  const store::FileHeader header{
+      .kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
   Ivp ivp;
   ivp.y0 = initial_state(scene);
   ivp.t1 = arguments.end_time;
@@ -142,8 +153,9 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   const StepCount count = std::holds_alternative<FixedStep>(control)
                               ? count_steps(0.0, arguments.end_time, std::get<FixedStep>(control).step)
                               : StepCount{};
-  const std::uint64_t expected =
-      std::holds_alternative<FixedStep>(control) ? std::min(arguments.frames, count.total() + 1) : arguments.frames;
+  const std::uint64_t expected = std::holds_alternative<FixedStep>(control)
+                                     ? std::min(arguments.frames, count.total() + 1)
+                                     : arguments.frames;
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
                                  static_cast<Index>(expected));
   study::FrameSelector frames(ivp.t0, ivp.t1, control, arguments.frames, writer);
@@ -151,13 +163,15 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   Solution solution = integrator->solve(ivp, control, observer);
   observer.finish();
   if (solution.status.code == StatusCode::stopped_by_observer && interrupted) {
-    solution.status = {StatusCode::interrupted, fmt::format("interrupted by the user at t = {:.6g}", solution.time)};
+    solution.status = {StatusCode::interrupted,
+                       fmt::format("interrupted by the user at t = {:.6g}", solution.time)};
   }
   writer.finish(solution.status, solution.work);
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
-    fmt::print(stderr, "federwerk: {}; what was computed is in {}\n", solution.status.describe(), arguments.output);
+    fmt::print(stderr, "federwerk: {}; what was computed is in {}\n", solution.status.describe(),
+               arguments.output);
     return exit_failure;
   }
   return exit_success;
@@ -169,13 +183,26 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::App* command = app.add_subcommand("simulate", "Simulates one scene with one method into an HDF5 file");
   auto arguments = std::make_shared<SimulateArguments>();
   command->add_option("scene", arguments->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
-  command->add_option("--method", arguments->method, "Method, for example rk4; see \"federwerk list methods\"")->required()->type_name("NAME");
-  CLI::Option* step = command->add_option("--step", arguments->step, "Step [s] of a fixed-step method")->type_name("H");
-  CLI::Option* relative = command->add_option("--rtol", arguments->relative_tolerance, "Relative tolerance of an adaptive method")->type_name("R");
-  CLI::Option* absolute = command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")->type_name("A");
-  command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->required()->type_name("T");
-  command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")->capture_default_str()->type_name("N");
-  command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")->type_name("FILE.h5");
+  command
+      ->add_option("--method", arguments->method, "Method, for example rk4; see \"federwerk list methods\"")
+      ->required()
+      ->type_name("NAME");
+  CLI::Option* step =
+      command->add_option("--step", arguments->step, "Step [s] of a fixed-step method")->type_name("H");
+  CLI::Option* relative =
+      command->add_option("--rtol", arguments->relative_tolerance, "Relative tolerance of an adaptive method")
+          ->type_name("R");
+  CLI::Option* absolute =
+      command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")
+          ->type_name("A");
+  command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")
+      ->required()
+      ->type_name("T");
+  command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
+      ->type_name("FILE.h5");
   command->add_flag("--xdmf", arguments->xdmf, "Also write FILE.xdmf, which ParaView opens");
   command->callback([arguments, step, relative, absolute, &action, command_line] {
     arguments->has_step = step->count() > 0;

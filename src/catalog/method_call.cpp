@@ -10,7 +10,8 @@ MethodCall parse_method_call(const std::string& text) {
   const auto open = text.find('[');
   if (open == std::string::npos) return {text, {}};
   const auto malformed = [&](const std::string& what) {
-    throw InputError(fmt::format("method \"{}\": {}; expected name or name[option=value,option=value]", text, what));
+    throw InputError(
+        fmt::format("method \"{}\": {}; expected name or name[option=value,option=value]", text, what));
   };
   if (text.back() != ']') malformed("found no closing ]");
   MethodCall call{text.substr(0, open), {}};
@@ -20,7 +21,8 @@ MethodCall parse_method_call(const std::string& text) {
     const std::string item = rest.substr(0, comma);
     rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
     const auto equals = item.find('=');
-    if (equals == std::string::npos || equals == 0) malformed(fmt::format("found \"{}\" without option=value", item));
+    if (equals == std::string::npos || equals == 0)
+      malformed(fmt::format("found \"{}\" without option=value", item));
     if (!call.options.emplace(item.substr(0, equals), item.substr(equals + 1)).second) {
       malformed(fmt::format("found option \"{}\" twice", item.substr(0, equals)));
     }

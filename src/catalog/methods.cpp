@@ -36,7 +36,8 @@ Value choose(const MethodOptions& options, const std::string& name, Value fallba
     if (text == option->second) return value;
     names.push_back(text);
   }
-  throw InputError(fmt::format("option {}: found \"{}\", expected one of {}", name, option->second, fmt::join(names, ", ")));
+  throw InputError(fmt::format("option {}: found \"{}\", expected one of {}", name, option->second,
+                               fmt::join(names, ", ")));
 }
 
 double positive_number(const MethodOptions& options, const std::string& name, double fallback) {
@@ -46,7 +47,8 @@ double positive_number(const MethodOptions& options, const std::string& name, do
   const char* end = option->second.data() + option->second.size();
   const auto [stop, error] = std::from_chars(option->second.data(), end, value);
   if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
-    throw InputError(fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
+    throw InputError(
+        fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
   }
   return value;
 }
@@ -60,15 +62,17 @@ MethodEntry linearised_implicit_euler() {
            {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
-            chosen.linear_solver.kind = choose<LinearSolverKind>(options, "linear_solver", LinearSolverKind::conjugate_gradient,
-                                               {{"cg", LinearSolverKind::conjugate_gradient},
-                                                {"cholesky", LinearSolverKind::sparse_cholesky},
-                                                {"lu", LinearSolverKind::sparse_lu}});
+            chosen.linear_solver.kind =
+                choose<LinearSolverKind>(options, "linear_solver", LinearSolverKind::conjugate_gradient,
+                                         {{"cg", LinearSolverKind::conjugate_gradient},
+                                          {"cholesky", LinearSolverKind::sparse_cholesky},
+                                          {"lu", LinearSolverKind::sparse_lu}});
             chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
-            chosen.tangent = choose<TangentModel>(options, "tangent", TangentModel::exact,
-                                    {{"exact", TangentModel::exact},
-                                     {"tensile_geometric_term", TangentModel::tensile_geometric_term},
-                                     {"psd_projection", TangentModel::psd_projection}});
+            chosen.tangent =
+                choose<TangentModel>(options, "tangent", TangentModel::exact,
+                                     {{"exact", TangentModel::exact},
+                                      {"tensile_geometric_term", TangentModel::tensile_geometric_term},
+                                      {"psd_projection", TangentModel::psd_projection}});
             return integrators::make_implicit_euler_linearised(chosen);
           }};
 }
@@ -114,9 +118,10 @@ std::unique_ptr<Integrator> make_method(const std::string& text) {
     if (!known) {
       std::vector<std::string> names;
       for (const OptionInfo& option : entry.options) names.push_back(option.name);
-      throw InputError(names.empty() ? fmt::format("method \"{}\" takes no options, found \"{}\"", call.name, name)
-                                     : fmt::format("method \"{}\": unknown option \"{}\", expected one of {}",
-                                                   call.name, name, fmt::join(names, ", ")));
+      throw InputError(names.empty()
+                           ? fmt::format("method \"{}\" takes no options, found \"{}\"", call.name, name)
+                           : fmt::format("method \"{}\": unknown option \"{}\", expected one of {}",
+                                         call.name, name, fmt::join(names, ", ")));
     }
   }
   try {

@@ -16,11 +16,21 @@ namespace fw::catalog {
 
 const std::vector<ProblemEntry>& problems() {
   using namespace fw::problems;
-  static const std::vector<ProblemEntry> list = {
-      dahlquist_entry(),        dahlquist_complex_entry(), rotation_entry(),    prothero_robinson_entry(),
-      harmonic_oscillator_entry(), damped_oscillator_entry(), driven_duffing_entry(), spring_pendulum_entry(),
-      linear_chain_entry(),     kepler_entry(),            henon_heiles_entry(), pleiades_entry(),
-      fermi_pasta_ulam_entry(), van_der_pol_entry(),       robertson_entry()};
+  static const std::vector<ProblemEntry> list = {dahlquist_entry(),
+                                                 dahlquist_complex_entry(),
+                                                 rotation_entry(),
+                                                 prothero_robinson_entry(),
+                                                 harmonic_oscillator_entry(),
+                                                 damped_oscillator_entry(),
+                                                 driven_duffing_entry(),
+                                                 spring_pendulum_entry(),
+                                                 linear_chain_entry(),
+                                                 kepler_entry(),
+                                                 henon_heiles_entry(),
+                                                 pleiades_entry(),
+                                                 fermi_pasta_ulam_entry(),
+                                                 van_der_pol_entry(),
+                                                 robertson_entry()};
   return list;
 }
 

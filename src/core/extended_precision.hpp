@@ -12,8 +12,14 @@ using Float128 = boost::multiprecision::float128;
 
 /// The part of a number by which a right-hand side may branch. Differentiation by a complex step perturbs
 /// the imaginary part only, so a comparison has to look at the real part.
-inline double real_part(double x) { return x; }
-inline const Float128& real_part(const Float128& x) { return x; }
-inline double real_part(const Complex& x) { return x.real(); }
+inline double real_part(double x) {
+  return x;
+}
+inline const Float128& real_part(const Float128& x) {
+  return x;
+}
+inline double real_part(const Complex& x) {
+  return x.real();
+}
 
 }  // namespace fw

@@ -38,6 +38,8 @@ std::string timestamp_utc() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
-std::string version() { return build::version; }
+std::string version() {
+  return build::version;
+}
 
 }  // namespace fw

@@ -23,7 +23,9 @@ bool ButcherTableau::is_explicit() const {
 
 void check_tableau(const ButcherTableau& tableau) {
   const Index s = tableau.b.size();
-  const auto fail = [&](const char* what) { throw std::logic_error("tableau \"" + tableau.name + "\": " + what); };
+  const auto fail = [&](const char* what) {
+    throw std::logic_error("tableau \"" + tableau.name + "\": " + what);
+  };
   if (s == 0 || tableau.A.rows() != s || tableau.A.cols() != s || tableau.c.size() != s) {
     fail("A must be s x s, b and c of length s");
   }
@@ -56,7 +58,8 @@ int order_of_accuracy(const ButcherTableau& tableau) {
   };
   int order = 4;
   for (const Condition& condition : conditions) {
-    if (std::abs(condition.value - condition.expected) > rounding) order = std::min(order, condition.order - 1);
+    if (std::abs(condition.value - condition.expected) > rounding)
+      order = std::min(order, condition.order - 1);
   }
   return order;
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/stepper.hpp"
 #include "integrators/step_matrix.hpp"
+#include "integrators/stepper.hpp"
 #include "linalg/linear_solver.hpp"
 #include "linalg/newton.hpp"
 

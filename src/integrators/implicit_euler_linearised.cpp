@@ -46,7 +46,8 @@ class LinearisedStepper final : public Stepper {
   Status advise(Status status) const {
     if (status.code == StatusCode::matrix_indefinite && options_.tangent != TangentModel::psd_projection) {
       status.message +=
-          "; compressed springs make the tangent stiffness indefinite (erratum E5): a smaller step, the tangent "
+          "; compressed springs make the tangent stiffness indefinite (erratum E5): a smaller step, the "
+          "tangent "
           "model psd_projection, or the linear solver lu go on";
     }
     return status;

@@ -29,7 +29,8 @@ ImplicitKick::ImplicitKick(const SecondOrderSystem& system, Work& work) : system
   workspace_.resize(n);
 }
 
-Status ImplicitKick::solve(double t, double c, ConstVectorRef q, ConstVectorRef w, VectorRef v, VectorRef force) {
+Status ImplicitKick::solve(double t, double c, ConstVectorRef q, ConstVectorRef w, VectorRef v,
+                           VectorRef force) {
   if (system_.force_class() == ForceClass::position) {
     system_.force(t, q, w, force);
     ++work_.rhs_evaluations;
@@ -47,7 +48,8 @@ Status ImplicitKick::solve(double t, double c, ConstVectorRef q, ConstVectorRef 
       return {StatusCode::non_finite, "the velocity of the implicit kick is not finite"};
     }
     const double defect = (candidate_ - v).lpNorm<Eigen::Infinity>();
-    // The fixed-point map amplifies rounding by c‖M⁻¹D‖, so a tiny defect that has stopped falling is the end.
+    // The fixed-point map amplifies rounding by c‖M⁻¹D‖, so a tiny defect that has stopped falling is the
+    // end.
     const bool stagnates = defect >= 0.5 * previous && defect <= 1e-9 * scale;
     if (defect <= newton_tolerance * scale || stagnates) {
       v = candidate_;

@@ -10,9 +10,9 @@ namespace fw::integrators {
 /// Solves v = w + c M⁻¹ f(t, q, v) for v: the half-kick that keeps Verlet schemes at order 2 when forces
 /// depend on velocity (erratum E6 of the lecture).
 ///
-/// Newton's method; its matrix M − c D is never assembled: D·p comes from the system, M preconditions conjugate
-/// gradients. Dampers are linear in v, so one correction suffices; obstacles may need a few. Where forces
-/// depend on position only, v follows from one force without iteration.
+/// Newton's method; its matrix M − c D is never assembled: D·p comes from the system, M preconditions
+/// conjugate gradients. Dampers are linear in v, so one correction suffices; obstacles may need a few. Where
+/// forces depend on position only, v follows from one force without iteration.
 class ImplicitKick {
  public:
   explicit ImplicitKick(const SecondOrderSystem& system, Work& work);

@@ -7,8 +7,8 @@ namespace fw::integrators {
 /// Adds `value` to every diagonal entry of a compressed matrix whose pattern has a full diagonal.
 void add_to_diagonal(SparseMatrix& matrix, double value);
 
-/// The matrix A = M − h D − h² K of an implicit step on a second-order system [Zachmann 2011, S26, extended by D].
-/// Its pattern is made once.
+/// The matrix A = M − h D − h² K of an implicit step on a second-order system [Zachmann 2011, S26, extended
+/// by D]. Its pattern is made once.
 class StepMatrix {
  public:
   explicit StepMatrix(const SecondOrderSystem& system);
@@ -21,7 +21,6 @@ class StepMatrix {
   /// position derivative, of size O(h²). For solvers that need a symmetric matrix.
   const SparseMatrix& assemble_symmetric(double t, ConstVectorRef q, ConstVectorRef v, double h,
                                          TangentModel model);
-
 
  private:
   const SecondOrderSystem& system_;

@@ -13,7 +13,8 @@ constexpr double blow_up_bound = 1e100;
 
 Status check_state(ConstVectorRef y, double t, std::uint64_t step) {
   if (!y.allFinite()) {
-    return {StatusCode::non_finite, fmt::format("the state is not finite after step {} at t = {:.6g}", step, t)};
+    return {StatusCode::non_finite,
+            fmt::format("the state is not finite after step {} at t = {:.6g}", step, t)};
   }
   if (y.lpNorm<Eigen::Infinity>() > blow_up_bound) {
     return {StatusCode::blow_up,
@@ -26,10 +27,11 @@ void refuse_broken_interval(const MethodInfo& info, const Ivp& ivp, double h, co
   const double length = ivp.t1 - ivp.t0;
   const double larger = length / static_cast<double>(std::max<std::uint64_t>(count.whole, 1));
   const double smaller = length / static_cast<double>(count.whole + 1);
-  throw InputError(fmt::format(
-      "step {} does not divide the interval of length {}: multistep method \"{}\" needs a whole number of steps; "
-      "the nearest steps that fit are {} and {}",
-      h, length, info.name, smaller, larger));
+  throw InputError(
+      fmt::format("step {} does not divide the interval of length {}: multistep method \"{}\" needs a whole "
+                  "number of steps; "
+                  "the nearest steps that fit are {} and {}",
+                  h, length, info.name, smaller, larger));
 }
 
 }  // namespace

@@ -60,20 +60,20 @@ class VerletStepper final : public Stepper {
 
 std::unique_ptr<Integrator> make_verlet(VerletVelocity velocity) {
   const bool central = velocity == VerletVelocity::central;
-  MethodInfo info{
-      .name = central ? "verlet" : "verlet_backward_velocity",
-      .title = central ? "Verlet (two-step), dampers at the central velocity"
-                       : "Verlet (two-step), dampers at the backward difference",
-      .family = "symplectic",
-      .order = 2,
-      .order_with_velocity_forces = central ? 2 : 1,
-      .stages = 1,
-      .is_multistep = true,
-      .is_symplectic = true,
-      .needs_second_order = true,
-      .formula = central ? "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_{n+1} - x_{n-1})/(2h))"
-                         : "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_n - x_{n-1})/h)",
-      .reference = "[Zachmann 2011, S17-S18; Verlet 1967; Hairer, Lubich, Wanner 2003]"};
+  MethodInfo info{.name = central ? "verlet" : "verlet_backward_velocity",
+                  .title = central ? "Verlet (two-step), dampers at the central velocity"
+                                   : "Verlet (two-step), dampers at the backward difference",
+                  .family = "symplectic",
+                  .order = 2,
+                  .order_with_velocity_forces = central ? 2 : 1,
+                  .stages = 1,
+                  .is_multistep = true,
+                  .is_symplectic = true,
+                  .needs_second_order = true,
+                  .formula = central
+                                 ? "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_{n+1} - x_{n-1})/(2h))"
+                                 : "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_n - x_{n-1})/h)",
+                  .reference = "[Zachmann 2011, S17-S18; Verlet 1967; Hairer, Lubich, Wanner 2003]"};
   return std::make_unique<FixedStepIntegrator>(
       std::move(info), [velocity](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
         return std::make_unique<VerletStepper>(velocity, ivp, work);

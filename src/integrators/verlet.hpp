@@ -16,8 +16,9 @@ enum class VerletVelocity {
 /// x₁ = x₀ + h v₀ + ½h² M⁻¹ f₀ [Zachmann 2011, S17-S18].
 ///
 /// Computed in the algebraically identical summed form d_{n+1} = d_n + h² M⁻¹ f_n, x_{n+1} = x_n + d_{n+1},
-/// whose rounding error does not grow like 1/h² [Hairer, Lubich, Wanner 2006, VIII.5]. Reported velocities are
-/// the central differences v_n = (x_{n+1} − x_{n−1})/(2h) = d_n/h + ½h M⁻¹ f_n; they need no future state.
+/// whose rounding error does not grow like 1/h² [Hairer, Lubich, Wanner 2006, VIII.5]. Reported velocities
+/// are the central differences v_n = (x_{n+1} − x_{n−1})/(2h) = d_n/h + ½h M⁻¹ f_n; they need no future
+/// state.
 std::unique_ptr<Integrator> make_verlet(VerletVelocity velocity);
 
 }  // namespace fw::integrators

@@ -97,12 +97,14 @@ LinearSolve conjugate_gradient(const Apply& apply, const Precondition& precondit
   }
   apply(x, Ap);
   result.relative_residual = (b - Ap).norm() / b_norm;
-  // Rounding lets the true residual stay above a tolerance near machine precision; more than that is a failure.
+  // Rounding lets the true residual stay above a tolerance near machine precision; more than that is a
+  // failure.
   const double rounding = 1e-13;
   if (!(result.relative_residual <= std::max(10.0 * tolerance, rounding))) {
-    result.status = {StatusCode::linear_solver_failed,
-                     fmt::format("the true residual {:.3g} of conjugate gradients is above the tolerance {:.3g}",
-                                 result.relative_residual, tolerance)};
+    result.status = {
+        StatusCode::linear_solver_failed,
+        fmt::format("the true residual {:.3g} of conjugate gradients is above the tolerance {:.3g}",
+                    result.relative_residual, tolerance)};
   }
   return result;
 }

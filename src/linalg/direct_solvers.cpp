@@ -18,8 +18,9 @@ LinearSolve judge(const SparseMatrix& A, ConstVectorRef b, ConstVectorRef x, Vec
   if (!std::isfinite(result.relative_residual)) {
     result.status = {StatusCode::non_finite, "the solution of the linear system is not finite"};
   } else if (result.relative_residual > 1e-6) {
-    result.status = {StatusCode::linear_solver_failed,
-                     fmt::format("the direct solver left a relative residual of {:.3g}", result.relative_residual)};
+    result.status = {
+        StatusCode::linear_solver_failed,
+        fmt::format("the direct solver left a relative residual of {:.3g}", result.relative_residual)};
   }
   return result;
 }
@@ -46,7 +47,9 @@ LinearSolve SparseCholeskySolver::solve(ConstVectorRef b, VectorRef x, Work& wor
   return judge(matrix_, b, x, residual_);
 }
 
-SparseLuSolver::SparseLuSolver() { klu_defaults(&common_); }
+SparseLuSolver::SparseLuSolver() {
+  klu_defaults(&common_);
+}
 
 SparseLuSolver::~SparseLuSolver() {
   klu_free_numeric(&numeric_, &common_);
@@ -65,7 +68,8 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
   if (symbolic_ == nullptr) {
     symbolic_ = klu_analyze(static_cast<int>(matrix_.cols()), outer, inner, &common_);
     if (symbolic_ == nullptr) {
-      return {StatusCode::matrix_singular, fmt::format("KLU cannot order the matrix (status {})", common_.status)};
+      return {StatusCode::matrix_singular,
+              fmt::format("KLU cannot order the matrix (status {})", common_.status)};
     }
   }
   if (numeric_ != nullptr) {

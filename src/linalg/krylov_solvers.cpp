@@ -29,13 +29,15 @@ Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
     }
     const Eigen::LLT<Block> cholesky(block);
     if (cholesky.info() != Eigen::Success) {
-      return {StatusCode::matrix_indefinite,
-              fmt::format("the diagonal block of row {} is not positive definite, so the matrix is not", first)};
+      return {
+          StatusCode::matrix_indefinite,
+          fmt::format("the diagonal block of row {} is not positive definite, so the matrix is not", first)};
     }
     const Block inverse = cholesky.solve(Block::Identity());
     for (Index column = 0; column < block_size_; ++column) {
       for (Index row = 0; row < block_size_; ++row) {
-        inverse_blocks_[static_cast<std::size_t>((first + column) * block_size_ + row)] = inverse(row, column);
+        inverse_blocks_[static_cast<std::size_t>((first + column) * block_size_ + row)] =
+            inverse(row, column);
       }
     }
   }

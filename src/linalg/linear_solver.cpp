@@ -7,9 +7,12 @@ namespace fw::linalg {
 
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options) {
   switch (options.kind) {
-    case LinearSolverKind::conjugate_gradient: return std::make_unique<ConjugateGradientSolver>(options);
-    case LinearSolverKind::sparse_cholesky: return std::make_unique<SparseCholeskySolver>();
-    case LinearSolverKind::sparse_lu: return std::make_unique<SparseLuSolver>();
+    case LinearSolverKind::conjugate_gradient:
+      return std::make_unique<ConjugateGradientSolver>(options);
+    case LinearSolverKind::sparse_cholesky:
+      return std::make_unique<SparseCholeskySolver>();
+    case LinearSolverKind::sparse_lu:
+      return std::make_unique<SparseLuSolver>();
   }
   return nullptr;
 }

@@ -31,8 +31,8 @@ enum class LinearSolverKind {
 
 struct LinearSolverOptions {
   LinearSolverKind kind = LinearSolverKind::conjugate_gradient;
-  double relative_tolerance = 1e-10;   ///< of conjugate gradients
-  std::uint64_t max_iterations = 0;    ///< of conjugate gradients; 0: ten times the number of unknowns
+  double relative_tolerance = 1e-10;  ///< of conjugate gradients
+  std::uint64_t max_iterations = 0;   ///< of conjugate gradients; 0: ten times the number of unknowns
 };
 
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options);

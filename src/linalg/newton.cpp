@@ -25,10 +25,12 @@ Status Newton::solve(NewtonProblem& problem, VectorRef u, double scale, Work& wo
   double residual_norm = residual_.norm();
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (!std::isfinite(residual_norm)) return {StatusCode::non_finite, "the residual of Newton's iteration is not finite"};
+    if (!std::isfinite(residual_norm))
+      return {StatusCode::non_finite, "the residual of Newton's iteration is not finite"};
     if (residual_norm == 0.0) return {};
     if (Status status = solver_->factorise(problem.matrix(u), work); !status.ok()) return status;
-    if (LinearSolve solve = solver_->solve(residual_, correction_, work); !solve.status.ok()) return solve.status;
+    if (LinearSolve solve = solver_->solve(residual_, correction_, work); !solve.status.ok())
+      return solve.status;
     ++work.newton_iterations;
 
     const double size = correction_.lpNorm<Eigen::Infinity>();
@@ -56,8 +58,8 @@ Status Newton::solve(NewtonProblem& problem, VectorRef u, double scale, Work& wo
     previous = size;
   }
   return {StatusCode::newton_failed,
-          fmt::format("Newton's iteration did not converge in {} iterations (residual {:.3g})", max_iterations,
-                      residual_norm)};
+          fmt::format("Newton's iteration did not converge in {} iterations (residual {:.3g})",
+                      max_iterations, residual_norm)};
 }
 
 }  // namespace fw::linalg

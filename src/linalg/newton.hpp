@@ -23,8 +23,9 @@ class Newton {
   Newton(Index size, LinearSolverKind kind);
 
   /// Solves g(u) = 0 from the initial guess `u`. Converged when a full correction is at most
-  /// 1e-12·max(‖u‖∞, scale), or has stopped falling below 1e-8 of that (rounding); `problem.residual` has then
-  /// been evaluated last at the returned `u`. Fails with newton_failed or with the linear solver's Status.
+  /// 1e-12·max(‖u‖∞, scale), or has stopped falling below 1e-8 of that (rounding); `problem.residual` has
+  /// then been evaluated last at the returned `u`. Fails with newton_failed or with the linear solver's
+  /// Status.
   Status solve(NewtonProblem& problem, VectorRef u, double scale, Work& work);
 
  private:

@@ -152,7 +152,8 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
   void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
                  SparseMatrix& K) const override {
     if (model != TangentModel::exact) {
-      throw InputError("this system has no spring elements: its tangent stiffness is available as \"exact\" only");
+      throw InputError(
+          "this system has no spring elements: its tangent stiffness is available as \"exact\" only");
     }
     const Index n = mass_.size();
     for (Index j = 0; j < n; ++j) {

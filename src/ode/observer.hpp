@@ -23,7 +23,8 @@ class Observer {
  public:
   virtual ~Observer() = default;
 
-  /// Called once with the initial state (index 0) and after every accepted step. Returns false to stop the run.
+  /// Called once with the initial state (index 0) and after every accepted step. Returns false to stop the
+  /// run.
   virtual bool observe(const StepView& view) = 0;
 };
 

@@ -36,8 +36,8 @@ class OdeSystem {
   /// out = J(t, y)·w without assembly.
   virtual void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const = 0;
 
-  /// The structure y = (q, v), M v̇ = f(t, q, v), or null where there is none. Then N = 2n, the first n entries
-  /// of y are positions and the last n velocities.
+  /// The structure y = (q, v), M v̇ = f(t, q, v), or null where there is none. Then N = 2n, the first n
+  /// entries of y are positions and the last n velocities.
   virtual const SecondOrderSystem* second_order() const = 0;
 };
 

@@ -6,8 +6,8 @@
 
 namespace fw {
 
-/// What the force depends on; schemes claim their order per class (erratum E6: explicit Verlet schemes fall to
-/// order 1 when a damper is evaluated at a lagged velocity).
+/// What the force depends on; schemes claim their order per class (erratum E6: explicit Verlet schemes fall
+/// to order 1 when a damper is evaluated at a lagged velocity).
 enum class ForceClass {
   position,  ///< f = f(t, q)
   velocity,  ///< f = f(t, q, v)
@@ -15,9 +15,9 @@ enum class ForceClass {
 
 /// Which tangent stiffness goes into a *matrix*. The force itself is never changed by this choice.
 enum class TangentModel {
-  exact,                     ///< K = ∂f/∂q
-  tensile_geometric_term,    ///< springs keep max(1 − l₀/L, 0) in place of 1 − l₀/L
-  psd_projection,            ///< each element's block is projected onto the negative semi-definite cone
+  exact,                   ///< K = ∂f/∂q
+  tensile_geometric_term,  ///< springs keep max(1 − l₀/L, 0) in place of 1 − l₀/L
+  psd_projection,          ///< each element's block is projected onto the negative semi-definite cone
 };
 
 /// The second-order system M q̈ = f(t, q, q̇) with a constant diagonal mass matrix.
@@ -43,8 +43,8 @@ class SecondOrderSystem {
   /// f(t, q, v) [N]; rows of fixed degrees of freedom are zero.
   virtual void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const = 0;
 
-  /// An n×n matrix of zeros with the union of the patterns of M, K and D. Made once per run; symmetric pattern,
-  /// diagonal included.
+  /// An n×n matrix of zeros with the union of the patterns of M, K and D. Made once per run; symmetric
+  /// pattern, diagonal included.
   virtual SparseMatrix tangent_pattern() const = 0;
 
   /// K = ∂f/∂q [N/m] into a matrix from `tangent_pattern()`. Rows of fixed degrees of freedom are zero (their

@@ -17,8 +17,8 @@ struct FixedStep {
 struct AdaptiveStep {
   double relative_tolerance = 1e-6;
   double absolute_tolerance = 1e-9;
-  double initial_step = 0.0;  ///< [s]; 0: chosen by the scheme
-  double minimum_step = 0.0;  ///< [s]
+  double initial_step = 0.0;                                      ///< [s]; 0: chosen by the scheme
+  double minimum_step = 0.0;                                      ///< [s]
   double maximum_step = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t maximum_steps = 100'000'000;
 };
@@ -27,8 +27,8 @@ using StepControl = std::variant<FixedStep, AdaptiveStep>;
 
 /// How an interval divides into steps.
 struct StepCount {
-  std::uint64_t whole = 0;   ///< number of steps of length h
-  double remainder = 0.0;    ///< length of a shorter last step [s], 0 if none
+  std::uint64_t whole = 0;  ///< number of steps of length h
+  double remainder = 0.0;   ///< length of a shorter last step [s], 0 if none
   std::uint64_t total() const { return whole + (remainder > 0.0 ? 1 : 0); }
 };
 

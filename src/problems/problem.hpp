@@ -18,14 +18,14 @@ struct Invariant {
 
 /// A published digit string that a reference has to reproduce.
 struct KnownValue {
-  double time = 0.0;   ///< [s]
-  Index component = 0; ///< index into y
-  std::string digits;  ///< decimal, as published
+  double time = 0.0;    ///< [s]
+  Index component = 0;  ///< index into y
+  std::string digits;   ///< decimal, as published
 };
 
 /// A named initial value problem with everything that is known of it.
 struct Problem {
-  std::string name;         ///< as it is called in studies, for example "henon_heiles"
+  std::string name;  ///< as it is called in studies, for example "henon_heiles"
   std::string title;
   std::string description;  ///< the equations, in formula
   std::string source;       ///< literature

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/explicit_system.hpp"
+#include "scene/generators.hpp"
 
 namespace fw::scene {
 namespace {
@@ -45,7 +46,9 @@ Kind make_kind(const std::string& name) {
 }
 
 Kind read_kind(const CheckedTable& generate) {
-  const std::string name = generate.choice("kind", {"chain", "cloth", "grid", "block", "mesh"});
+  std::vector<std::string> names{"mesh"};
+  for (const GeneratorInfo& generator : generators()) names.push_back(generator.name);
+  const std::string name = generate.choice("kind", names);
   if (name == "mesh") {
     generate.fail("kind",
                   "found \"mesh\", expected one of \"chain\", \"cloth\", \"grid\", \"block\": meshes are not "

@@ -21,16 +21,18 @@ namespace {
 
 /// The keys of [convergence].
 struct Settings {
-  double ratio = 1.5;              ///< of successive steps
-  std::int64_t levels = 9;         ///< steps per case at most
-  double start_error = 0.02;       ///< relative error at the coarsest step, found by halving
+  double ratio = 1.5;         ///< of successive steps
+  std::int64_t levels = 9;    ///< steps per case; up to twice as many if these do not suffice for a fit
+  double start_error = 0.02;  ///< relative error at the coarsest step, found by halving
   std::int64_t max_steps = 4'000'000;  ///< no run takes more steps
-  double tolerance = 0.1;          ///< |observed − expected order| that still holds
+  double tolerance = 0.1;              ///< |observed − expected order| that still holds
   double minimum_correlation = 0.999;
 
   std::string text() const {
-    return fmt::format("ratio = {}\nlevels = {}\nstart_error = {}\nmax_steps = {}\ntolerance = {}\nminimum_correlation = {}\n",
-                       ratio, levels, start_error, max_steps, tolerance, minimum_correlation);
+    return fmt::format(
+        "ratio = {}\nlevels = {}\nstart_error = {}\nmax_steps = {}\ntolerance = {}\nminimum_correlation = "
+        "{}\n",
+        ratio, levels, start_error, max_steps, tolerance, minimum_correlation);
   }
 };
 
@@ -65,10 +67,9 @@ class SharedProblem {
   const analysis::ReferenceSolution& reference(const RunContext& context) const {
     std::call_once(once_, [&] {
       const double end[] = {problem_.problem.ivp.t1};
-      reference_ = problem_.problem.exact
-                       ? analysis::reference(problem_.problem, end)
-                       : analysis::ReferenceCache(context.reference_cache)
-                             .certified(problem_.identity, problem_.problem.ivp, end);
+      reference_ = problem_.problem.exact ? analysis::reference(problem_.problem, end)
+                                          : analysis::ReferenceCache(context.reference_cache)
+                                                .certified(problem_.identity, problem_.problem.ivp, end);
     });
     return reference_;
   }
@@ -82,20 +83,27 @@ class SharedProblem {
 /// The case problem × method.
 class ConvergenceCase {
  public:
-  ConvergenceCase(const SharedProblem& problem, std::string call, const Integrator& integrator, Settings settings,
-                  const RunContext& context)
-      : shared_(problem), problem_(problem.entry()), call_(std::move(call)), integrator_(integrator), settings_(settings), context_(context) {}
+  ConvergenceCase(const SharedProblem& problem, std::string call, const Integrator& integrator,
+                  Settings settings, const RunContext& context)
+      : shared_(problem),
+        problem_(problem.entry()),
+        call_(std::move(call)),
+        integrator_(integrator),
+        settings_(settings),
+        context_(context) {}
 
   CaseResult run() {
     if (integrator_.info().needs_second_order && !is_second_order()) {
-      return conclude(Verdict::not_applicable, "the method needs M q'' = f(t, q, q'), the problem is y' = f(t, y)");
+      return conclude(Verdict::not_applicable,
+                      "the method needs M q'' = f(t, q, q'), the problem is y' = f(t, y)");
     }
     if (!find_reference()) return conclude(Verdict::not_applicable, reference_.status.describe());
     std::optional<std::int64_t> coarsest = find_coarsest();
     if (!coarsest) {
-      return conclude(Verdict::fails, fmt::format("no step down to {:.3g} gives a relative error below {:g}: {}",
-                                                  length() / static_cast<double>(settings_.max_steps),
-                                                  settings_.start_error, last_status_.describe()));
+      return conclude(Verdict::fails,
+                      fmt::format("no step down to {:.3g} gives a relative error below {:g}: {}",
+                                  length() / static_cast<double>(settings_.max_steps), settings_.start_error,
+                                  last_status_.describe()));
     }
     refine(*coarsest);
     return judge();
@@ -124,8 +132,8 @@ class ConvergenceCase {
     Level level;
     level.step = length() / static_cast<double>(steps);
     StopWhenInterrupted observer(context_);
-    const Solution solution = integrator_.solve(
-        ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
+    const Solution solution =
+        integrator_.solve(ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
     if (context_.is_interrupted()) throw Interrupted{};
     last_status_ = solution.status;
     if (!solution.status.ok()) return std::nullopt;
@@ -145,7 +153,9 @@ class ConvergenceCase {
 
   void refine(std::int64_t coarsest) {
     const double floor = error_floor(rounding_floor, reference_relative());
-    for (std::int64_t k = 0; k < settings_.levels; ++k) {
+    // Where the asymptotic range begins later, as many levels again may be spent on finding it.
+    for (std::int64_t k = 0; k < 2 * settings_.levels; ++k) {
+      if (k >= settings_.levels && is_measured()) break;
       const double exact = static_cast<double>(coarsest) * std::pow(settings_.ratio, static_cast<double>(k));
       const auto steps = static_cast<std::int64_t>(std::llround(exact));
       if (steps > settings_.max_steps) break;
@@ -156,6 +166,12 @@ class ConvergenceCase {
       const std::size_t n = levels_.size();
       if (n >= 2 && levels_[n - 1].error.relative < floor && levels_[n - 2].error.relative < floor) break;
     }
+  }
+
+  bool is_measured() const {
+    if (!is_second_order()) return fit(&StateError::relative, 1.0).valid;
+    return fit(&StateError::position, scale_.position).valid &&
+           fit(&StateError::velocity, scale_.velocity).valid;
   }
 
   double reference_relative() const {
@@ -195,8 +211,8 @@ class ConvergenceCase {
       const bool agrees = std::abs(order_fit.order - expected_order()) <= settings_.tolerance &&
                           order_fit.correlation >= settings_.minimum_correlation;
       holds = holds && agrees;
-      reason += fmt::format("{} {:.3f} [{:.3f}, {:.3f}] r = {:.6f}", what, order_fit.order, order_fit.order_low,
-                            order_fit.order_high, order_fit.correlation);
+      reason += fmt::format("{} {:.3f} [{:.3f}, {:.3f}] r = {:.6f}", what, order_fit.order,
+                            order_fit.order_low, order_fit.order_high, order_fit.correlation);
     };
     if (is_second_order()) {
       check("position", *fit_position_);
@@ -246,7 +262,11 @@ class ConvergenceCase {
         {"used", "1", used, {}, {}},
         {"used_position", "1", used_of(fit_position_), {}, {}},
         {"used_velocity", "1", used_of(fit_velocity_), {}, {}},
-        {"error_components", "SI", components, {levels_.size(), size}, {{"norm", "signed difference per component of the state"}}},
+        {"error_components",
+         "SI",
+         components,
+         {levels_.size(), size},
+         {{"norm", "signed difference per component of the state"}}},
         {"rhs_evaluations", "1", evaluations, {}, {}},
         {"seconds", "s", seconds, {}, {}},
     };
@@ -257,8 +277,8 @@ class ConvergenceCase {
 
   std::string relative_norm() const {
     if (!is_second_order()) return fmt::format("root mean square over the state / {:.6g}", scale_.state);
-    return fmt::format("sqrt(((error_position / {:.6g} m)^2 + (error_velocity / {:.6g} m/s)^2) / 2)", scale_.position,
-                       scale_.velocity);
+    return fmt::format("sqrt(((error_position / {:.6g} m)^2 + (error_velocity / {:.6g} m/s)^2) / 2)",
+                       scale_.position, scale_.velocity);
   }
 
   void add_summary(CaseResult& result) const {
@@ -270,7 +290,8 @@ class ConvergenceCase {
       result.summary.push_back({"order_low" + suffix, "1", valid ? order_fit->order_low : none});
       result.summary.push_back({"order_high" + suffix, "1", valid ? order_fit->order_high : none});
       result.summary.push_back({"correlation" + suffix, "1", valid ? order_fit->correlation : none});
-      result.summary.push_back({"points" + suffix, "1", static_cast<std::int64_t>(order_fit ? order_fit->points : 0)});
+      result.summary.push_back(
+          {"points" + suffix, "1", static_cast<std::int64_t>(order_fit ? order_fit->points : 0)});
     };
     result.summary = {{"problem", "", problem_.label},
                       {"method", "", call_},
@@ -278,7 +299,8 @@ class ConvergenceCase {
     add_fit("", fit_);
     add_fit("_position", fit_position_);
     add_fit("_velocity", fit_velocity_);
-    result.summary.push_back({"reference_error", "SI", has_reference ? reference_.states.front().largest_error() : none});
+    result.summary.push_back(
+        {"reference_error", "SI", has_reference ? reference_.states.front().largest_error() : none});
     result.summary.push_back({"verdict", "", std::string(to_string(result.verdict))});
     result.summary.push_back({"reason", "", result.reason});
   }
@@ -301,14 +323,17 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
   Settings settings;
   const CheckedTable table = spec.table_or_empty("convergence");
   settings.ratio = table.number_or("ratio", settings.ratio, NumberRule::positive);
-  if (settings.ratio <= 1.0) table.fail("ratio", fmt::format("found {}, expected more than 1", settings.ratio));
+  if (settings.ratio <= 1.0)
+    table.fail("ratio", fmt::format("found {}, expected more than 1", settings.ratio));
   settings.levels = table.integer_or("levels", settings.levels, 6, 100);
   settings.start_error = table.number_or("start_error", settings.start_error, NumberRule::positive);
   settings.max_steps = table.integer_or("max_steps", settings.max_steps, 100, 10'000'000'000);
   settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
-  settings.minimum_correlation = table.number_or("minimum_correlation", settings.minimum_correlation, NumberRule::nonnegative);
+  settings.minimum_correlation =
+      table.number_or("minimum_correlation", settings.minimum_correlation, NumberRule::nonnegative);
   const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t quick_levels = shrunk.integer_or("levels", std::min<std::int64_t>(settings.levels, 6), 6, 100);
+  const std::int64_t quick_levels =
+      shrunk.integer_or("levels", std::min<std::int64_t>(settings.levels, 6), 6, 100);
   const double quick_ratio = shrunk.number_or("ratio", settings.ratio, NumberRule::positive);
   if (quick_ratio <= 1.0) shrunk.fail("ratio", fmt::format("found {}, expected more than 1", quick_ratio));
   if (quick) {
@@ -327,14 +352,15 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
       if (integrator->info().is_adaptive) {
-        spec.fail("methods", {i}, fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
+        spec.fail("methods", {i},
+                  fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
       }
-      plan.cases.push_back(
-          {.id = group_name(problem->entry().label + "-" + call),
-           .identity = "convergence\n" + problem->entry().identity + "method = " + call + "\n" + settings.text(),
-           .run = [problem, call, integrator, settings](const RunContext& context) {
-             return ConvergenceCase(*problem, call, *integrator, settings, context).run();
-           }});
+      plan.cases.push_back({.id = group_name(problem->entry().label + "-" + call),
+                            .identity = "convergence\n" + problem->entry().identity + "method = " + call +
+                                        "\n" + settings.text(),
+                            .run = [problem, call, integrator, settings](const RunContext& context) {
+                              return ConvergenceCase(*problem, call, *integrator, settings, context).run();
+                            }});
     }
   }
 }
@@ -344,7 +370,8 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
 StudyKind convergence_kind() {
   return {.name = "convergence",
           .title = "Observed order of accuracy",
-          .description = "error against step for every method on every problem, fitted order with a 95 % interval",
+          .description =
+              "error against step for every method on every problem, fitted order with a 95 % interval",
           .read = read_convergence};
 }
 

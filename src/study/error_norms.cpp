@@ -12,7 +12,9 @@ double root_mean_square(ConstVectorRef values) {
 }
 
 /// A scale that is zero (a system at rest) would divide by zero: errors are then absolute.
-double positive_or_one(double scale) { return scale > 0.0 ? scale : 1.0; }
+double positive_or_one(double scale) {
+  return scale > 0.0 ? scale : 1.0;
+}
 
 }  // namespace
 
@@ -26,7 +28,8 @@ StateScale measure_scale(const Ivp& ivp, const analysis::ReferenceState& referen
     const double change = root_mean_square(end.head(n) - ivp.y0.head(n));
     const double size = root_mean_square(end.head(n));
     scale.position = positive_or_one(std::max(change, 1e-3 * size));
-    scale.velocity = positive_or_one(std::max(root_mean_square(end.tail(n)), root_mean_square(ivp.y0.tail(n))));
+    scale.velocity =
+        positive_or_one(std::max(root_mean_square(end.tail(n)), root_mean_square(ivp.y0.tail(n))));
   }
   return scale;
 }
@@ -47,8 +50,8 @@ StateError measure_error(const Ivp& ivp, ConstVectorRef state, const analysis::R
   const Index n = state.size() / 2;
   error.position = root_mean_square(difference.head(n));
   error.velocity = root_mean_square(difference.tail(n));
-  error.relative = std::sqrt(0.5 * (std::pow(error.position / scale.position, 2) +
-                                    std::pow(error.velocity / scale.velocity, 2)));
+  error.relative = std::sqrt(
+      0.5 * (std::pow(error.position / scale.position, 2) + std::pow(error.velocity / scale.velocity, 2)));
   return error;
 }
 

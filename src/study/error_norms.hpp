@@ -9,15 +9,16 @@ namespace fw::study {
 
 /// The error of an end state against a reference.
 struct StateError {
-  double position = 0.0;      ///< √(Σ e²/n) over positions [m]; NaN for a first-order system
-  double velocity = 0.0;      ///< the same over velocities [m/s]
-  double relative = 0.0;      ///< see `measure_error` [1]
+  double position = 0.0;           ///< √(Σ e²/n) over positions [m]; NaN for a first-order system
+  double velocity = 0.0;           ///< the same over velocities [m/s]
+  double relative = 0.0;           ///< see `measure_error` [1]
   std::vector<double> components;  ///< y_i − reference_i
 };
 
 /// Sizes that errors are related to.
 struct StateScale {
-  double position = 1.0;  ///< root mean square of the reference's change in position, at least its rounding level
+  double position =
+      1.0;  ///< root mean square of the reference's change in position, at least its rounding level
   double velocity = 1.0;  ///< root mean square of its velocity
   double state = 1.0;     ///< of the whole state, for first-order systems
 };

@@ -9,7 +9,8 @@
 
 namespace fw::study {
 
-FrameSelector::FrameSelector(double t0, double t1, const StepControl& control, std::uint64_t frames, FrameSink& sink)
+FrameSelector::FrameSelector(double t0, double t1, const StepControl& control, std::uint64_t frames,
+                             FrameSink& sink)
     : t0_(t0), t1_(t1), frames_(frames), expected_(frames), sink_(sink) {
   if (frames < 2) throw InputError(fmt::format("frames: found {}, expected at least 2", frames));
   if (const auto* fixed = std::get_if<FixedStep>(&control)) {

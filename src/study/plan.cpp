@@ -9,7 +9,8 @@
 
 namespace fw::study {
 
-Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog, bool quick) {
+Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
+               bool quick) {
   std::vector<std::string> names;
   for (const StudyKind& kind : kinds) names.push_back(kind.name);
   Plan plan;
@@ -34,7 +35,8 @@ Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, co
 std::string group_name(const std::string& text) {
   std::string name = text;
   for (char& letter : name) {
-    const bool keeps = std::isalnum(static_cast<unsigned char>(letter)) || std::string_view("_.-:=,[]").find(letter) != std::string_view::npos;
+    const bool keeps = std::isalnum(static_cast<unsigned char>(letter)) ||
+                       std::string_view("_.-:=,[]").find(letter) != std::string_view::npos;
     if (!keeps) letter = '_';
   }
   return name;

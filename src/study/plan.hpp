@@ -19,7 +19,9 @@ struct RunContext {
   /// Directory of certified references that were computed before; empty: none are kept.
   std::filesystem::path reference_cache;
 
-  bool is_interrupted() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
+  bool is_interrupted() const {
+    return interrupted != nullptr && interrupted->load(std::memory_order_relaxed);
+  }
 };
 
 /// Thrown inside a case when the user has interrupted it.
@@ -51,7 +53,8 @@ struct StudyKind {
 };
 
 /// Reads a study file of one of `kinds`; everything is checked before anything runs. Throws InputError.
-Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog, bool quick);
+Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
+               bool quick);
 
 /// A name that is fit for a group: letters, digits, and any of _.-:=,[] stay, everything else becomes '_'.
 std::string group_name(const std::string& text);

@@ -25,8 +25,8 @@ ProblemParameters read_parameters(const CheckedTable& section) {
 StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
   StudyProblem entry;
   if (section.has("scene") == section.has("name")) {
-    throw InputError(fmt::format("{}: found {} of \"name\" and \"scene\", expected exactly one", section.where(),
-                                 section.has("name") ? "both" : "none"));
+    throw InputError(fmt::format("{}: found {} of \"name\" and \"scene\", expected exactly one",
+                                 section.where(), section.has("name") ? "both" : "none"));
   }
   if (section.has("scene")) {
     const std::filesystem::path path =
@@ -55,9 +55,8 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
 
 std::vector<Invariant> energy_of(std::shared_ptr<const mechanics::MassSpringSystem> system) {
   const Index n = system->degrees_of_freedom();
-  return {{"energy", "J", [system, n](double, ConstVectorRef y) {
-             return system->energies(y.head(n), y.tail(n)).total();
-           }}};
+  return {{"energy", "J",
+           [system, n](double, ConstVectorRef y) { return system->energies(y.head(n), y.tail(n)).total(); }}};
 }
 
 }  // namespace
@@ -81,7 +80,8 @@ Problem problem_from_scene(const std::filesystem::path& path, double t_end, std:
 
 std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog) {
   std::vector<StudyProblem> problems;
-  for (const CheckedTable& section : spec.tables("problem")) problems.push_back(read_problem(section, catalog));
+  for (const CheckedTable& section : spec.tables("problem"))
+    problems.push_back(read_problem(section, catalog));
   if (problems.empty()) {
     throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
   }

@@ -18,8 +18,9 @@ std::string_view to_string(Verdict verdict);
 /// Values of one column; text is UTF-8.
 using ColumnValues = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
 
-/// A named array with a unit ("1" where it has no dimension, "" for text). `shape` is row-major; empty means one
-/// dimension with as many entries as there are values. `attributes` are further facts, for example the norm.
+/// A named array with a unit ("1" where it has no dimension, "" for text). `shape` is row-major; empty means
+/// one dimension with as many entries as there are values. `attributes` are further facts, for example the
+/// norm.
 struct Column {
   std::string name;
   std::string unit;
@@ -48,9 +49,9 @@ struct CaseResult {
 
 /// The result of a study: everything a result file holds but its provenance.
 struct StudyResult {
-  std::string kind;   ///< for example "convergence"
+  std::string kind;  ///< for example "convergence"
   std::string title;
-  std::string spec;   ///< the resolved input as TOML text
+  std::string spec;  ///< the resolved input as TOML text
   std::int64_t seed = 0;
   bool complete = true;  ///< false if cases are missing (interrupted)
   std::vector<CaseResult> cases;

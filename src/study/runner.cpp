@@ -16,13 +16,15 @@ namespace fw::study {
 
 namespace {
 
-/// Gives cases that ended by an exception the columns of one that went well, so that the summary stays a table.
+/// Gives cases that ended by an exception the columns of one that went well, so that the summary stays a
+/// table.
 void complete_rows(StudyResult& study) {
   const auto is_complete = [](const CaseResult& result) { return !result.summary.empty(); };
   const auto model = std::find_if(study.cases.begin(), study.cases.end(), is_complete);
   const std::vector<SummaryCell> columns =
-      model != study.cases.end() ? model->summary
-                                 : std::vector<SummaryCell>{{"verdict", "", std::string()}, {"reason", "", std::string()}};
+      model != study.cases.end()
+          ? model->summary
+          : std::vector<SummaryCell>{{"verdict", "", std::string()}, {"reason", "", std::string()}};
   for (CaseResult& result : study.cases) {
     if (is_complete(result)) continue;
     for (SummaryCell cell : columns) {
@@ -40,7 +42,6 @@ void complete_rows(StudyResult& study) {
       result.summary.push_back(std::move(cell));
     }
   }
-  for (CaseResult& result : study.cases) result.summary.insert(result.summary.begin(), {"case", "", result.id});
 }
 
 /// The run of one plan, shared by its threads.
@@ -68,7 +69,12 @@ class Run {
 
   StudyResult result() {
     if (failure_) std::rethrow_exception(failure_);
-    StudyResult study{.kind = plan_.kind, .title = plan_.title, .spec = plan_.spec, .seed = plan_.seed, .complete = true, .cases = {}};
+    StudyResult study{.kind = plan_.kind,
+                      .title = plan_.title,
+                      .spec = plan_.spec,
+                      .seed = plan_.seed,
+                      .complete = true,
+                      .cases = {}};
     for (std::optional<CaseResult>& result : results_) {
       if (result) {
         study.cases.push_back(std::move(*result));

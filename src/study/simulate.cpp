@@ -31,7 +31,8 @@ class FrameColumns final : public FrameSink {
 /// A frame selector that stops when the user interrupts.
 class InterruptibleFrames final : public Observer {
  public:
-  InterruptibleFrames(FrameSelector& frames, const RunContext& context) : frames_(frames), context_(context) {}
+  InterruptibleFrames(FrameSelector& frames, const RunContext& context)
+      : frames_(frames), context_(context) {}
   bool observe(const StepView& view) override { return frames_.observe(view) && !context_.is_interrupted(); }
 
  private:
@@ -46,7 +47,8 @@ void add_exact(const StudyProblem& entry, CaseResult& result) {
   const Ivp& ivp = entry.problem.ivp;
   std::vector<double> times, states;
   for (std::int64_t k = 0; k < exact_frames; ++k) {
-    const double t = ivp.t0 + (ivp.t1 - ivp.t0) * static_cast<double>(k) / static_cast<double>(exact_frames - 1);
+    const double t =
+        ivp.t0 + (ivp.t1 - ivp.t0) * static_cast<double>(k) / static_cast<double>(exact_frames - 1);
     times.push_back(t);
     for (const Float128& value : entry.problem.exact(t)) states.push_back(static_cast<double>(value));
   }
@@ -92,8 +94,8 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   for (const Invariant& invariant : entry.problem.invariants) {
     std::vector<double> values;
     for (std::size_t k = 0; k < columns.times().size(); ++k) {
-      values.push_back(invariant.value(columns.times()[k],
-                                       ConstVectorMap(columns.states().data() + k * size, static_cast<Index>(size))));
+      values.push_back(invariant.value(
+          columns.times()[k], ConstVectorMap(columns.states().data() + k * size, static_cast<Index>(size))));
     }
     result.columns.push_back({"invariant_" + group_name(invariant.name), invariant.unit, values, {}, {}});
   }
@@ -167,10 +169,12 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
   const std::vector<double> steps =
       spec.has("steps") ? spec.numbers("steps", NumberRule::positive) : std::vector<double>{};
   const CheckedTable tolerances = spec.table_or_empty("tolerances");
-  const AdaptiveStep adaptive{.relative_tolerance = tolerances.number_or("relative", 1e-8, NumberRule::positive),
-                              .absolute_tolerance = tolerances.number_or("absolute", 1e-10, NumberRule::positive)};
+  const AdaptiveStep adaptive{
+      .relative_tolerance = tolerances.number_or("relative", 1e-8, NumberRule::positive),
+      .absolute_tolerance = tolerances.number_or("absolute", 1e-10, NumberRule::positive)};
   const auto all_frames = spec.integer_or("frames", 101, 2, 10'000'000);
-  const auto quick_frames = spec.table_or_empty("quick").integer_or("frames", std::min<std::int64_t>(all_frames, 101), 2, 10'000'000);
+  const auto quick_frames = spec.table_or_empty("quick").integer_or(
+      "frames", std::min<std::int64_t>(all_frames, 101), 2, 10'000'000);
   const auto frames = static_cast<std::uint64_t>(quick ? quick_frames : all_frames);
 
   std::shared_ptr<const StudyProblem> first;
@@ -183,21 +187,27 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       const bool lacks_structure =
           integrator->info().needs_second_order && problem->problem.ivp.system->second_order() == nullptr;
       if (lacks_structure) {
-        spec.fail("methods", {i}, fmt::format("\"{}\" needs M q'' = f(t, q, q'), which problem \"{}\" is not", call, problem->label));
+        spec.fail("methods", {i},
+                  fmt::format("\"{}\" needs M q'' = f(t, q, q'), which problem \"{}\" is not", call,
+                              problem->label));
       }
-      const auto add = [&](const StepControl& control, const std::string& suffix, const std::string& identity) {
-        plan.cases.push_back(
-            {.id = group_name(problem->label + "-" + call + suffix),
-             .identity = fmt::format("simulate\n{}method = {}\nframes = {}\n{}", problem->identity, call, frames, identity),
-             .run = [problem, call, integrator, control, frames](const RunContext& context) {
-               return run_trajectory(*problem, call, *integrator, control, frames, context);
-             }});
+      const auto add = [&](const StepControl& control, const std::string& suffix,
+                           const std::string& identity) {
+        plan.cases.push_back({.id = group_name(problem->label + "-" + call + suffix),
+                              .identity = fmt::format("simulate\n{}method = {}\nframes = {}\n{}",
+                                                      problem->identity, call, frames, identity),
+                              .run = [problem, call, integrator, control, frames](const RunContext& context) {
+                                return run_trajectory(*problem, call, *integrator, control, frames, context);
+                              }});
       };
       if (integrator->info().is_adaptive) {
-        add(adaptive, "", fmt::format("relative = {}\nabsolute = {}\n", adaptive.relative_tolerance, adaptive.absolute_tolerance));
+        add(adaptive, "",
+            fmt::format("relative = {}\nabsolute = {}\n", adaptive.relative_tolerance,
+                        adaptive.absolute_tolerance));
         continue;
       }
-      if (steps.empty()) spec.fail("steps", fmt::format("missing or empty, but method \"{}\" has a fixed step", call));
+      if (steps.empty())
+        spec.fail("steps", fmt::format("missing or empty, but method \"{}\" has a fixed step", call));
       for (double step : steps) {
         count_steps(problem->problem.ivp.t0, problem->problem.ivp.t1, step);
         add(FixedStep{.step = step}, fmt::format("-h{}", step), fmt::format("step = {}\n", step));
@@ -208,8 +218,8 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
     const CheckedTable table = spec.table("vector_field");
     const FieldGrid grid = read_field(table);
     if (first->problem.ivp.system->size() > 2) {
-      throw InputError(fmt::format("{}: the vector field of \"{}\" has {} components, expected 1 or 2", table.where(),
-                                   first->label, first->problem.ivp.system->size()));
+      throw InputError(fmt::format("{}: the vector field of \"{}\" has {} components, expected 1 or 2",
+                                   table.where(), first->label, first->problem.ivp.system->size()));
     }
     plan.cases.push_back({.id = "vector_field",
                           .identity = "vector field\n" + first->identity + table.to_toml_text(),

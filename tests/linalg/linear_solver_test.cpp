@@ -8,8 +8,8 @@
 namespace fw::linalg {
 namespace {
 
-constexpr LinearSolverKind all_kinds[] = {LinearSolverKind::conjugate_gradient, LinearSolverKind::sparse_cholesky,
-                                          LinearSolverKind::sparse_lu};
+constexpr LinearSolverKind all_kinds[] = {LinearSolverKind::conjugate_gradient,
+                                          LinearSolverKind::sparse_cholesky, LinearSolverKind::sparse_lu};
 
 /// A sparse symmetric matrix with the given shift on the diagonal: positive definite for a large shift.
 SparseMatrix random_symmetric(Index n, double shift, std::uint64_t seed) {

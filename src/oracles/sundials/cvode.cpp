@@ -50,20 +50,28 @@ void keep_message(int, const char*, const char*, char* text, void* user_data) {
 Status status_of_flag(int flag, const Run& run, double t) {
   const auto with_reason = [&](StatusCode code) {
     char* name = CVodeGetReturnFlagName(flag);
-    std::string message = fmt::format("CVODE at t = {:.6g}: {}{}{}", t, name, run.message.empty() ? "" : ": ", run.message);
+    std::string message =
+        fmt::format("CVODE at t = {:.6g}: {}{}{}", t, name, run.message.empty() ? "" : ": ", run.message);
     std::free(name);
     return Status{code, std::move(message)};
   };
   switch (flag) {
-    case CV_TOO_MUCH_WORK: return with_reason(StatusCode::step_limit);
-    case CV_ERR_FAILURE: return with_reason(StatusCode::step_too_small);
-    case CV_CONV_FAILURE: return with_reason(StatusCode::newton_failed);
-    case CV_LSETUP_FAIL: return with_reason(StatusCode::matrix_singular);
-    case CV_LSOLVE_FAIL: return with_reason(StatusCode::linear_solver_failed);
+    case CV_TOO_MUCH_WORK:
+      return with_reason(StatusCode::step_limit);
+    case CV_ERR_FAILURE:
+      return with_reason(StatusCode::step_too_small);
+    case CV_CONV_FAILURE:
+      return with_reason(StatusCode::newton_failed);
+    case CV_LSETUP_FAIL:
+      return with_reason(StatusCode::matrix_singular);
+    case CV_LSOLVE_FAIL:
+      return with_reason(StatusCode::linear_solver_failed);
     case CV_FIRST_RHSFUNC_ERR:
     case CV_REPTD_RHSFUNC_ERR:
-    case CV_UNREC_RHSFUNC_ERR: return with_reason(StatusCode::non_finite);
-    default: return with_reason(StatusCode::library_failure);
+    case CV_UNREC_RHSFUNC_ERR:
+      return with_reason(StatusCode::non_finite);
+    default:
+      return with_reason(StatusCode::library_failure);
   }
 }
 
@@ -75,7 +83,8 @@ class CvodeBdf final : public Integrator {
   Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override {
     const auto* tolerances = std::get_if<AdaptiveStep>(&control);
     if (tolerances == nullptr) {
-      throw InputError(fmt::format("method \"{}\" chooses its own steps: give tolerances, not a step", info_.name));
+      throw InputError(
+          fmt::format("method \"{}\" chooses its own steps: give tolerances, not a step", info_.name));
     }
     if (!(tolerances->relative_tolerance > 0.0) || !(tolerances->absolute_tolerance > 0.0)) {
       throw InputError(fmt::format("tolerances: found {} and {}, expected both > 0",
@@ -109,9 +118,12 @@ class CvodeBdf final : public Integrator {
     require(CVodeSetJacFn(memory, evaluate_jacobian), "CVodeSetJacFn");
     require(CVodeSetMaxNumSteps(memory, -1), "CVodeSetMaxNumSteps");
     require(CVodeSetStopTime(memory, ivp.t1), "CVodeSetStopTime");
-    if (tolerances->initial_step > 0.0) require(CVodeSetInitStep(memory, tolerances->initial_step), "CVodeSetInitStep");
-    if (tolerances->minimum_step > 0.0) require(CVodeSetMinStep(memory, tolerances->minimum_step), "CVodeSetMinStep");
-    if (std::isfinite(tolerances->maximum_step)) require(CVodeSetMaxStep(memory, tolerances->maximum_step), "CVodeSetMaxStep");
+    if (tolerances->initial_step > 0.0)
+      require(CVodeSetInitStep(memory, tolerances->initial_step), "CVodeSetInitStep");
+    if (tolerances->minimum_step > 0.0)
+      require(CVodeSetMinStep(memory, tolerances->minimum_step), "CVodeSetMinStep");
+    if (std::isfinite(tolerances->maximum_step))
+      require(CVodeSetMaxStep(memory, tolerances->maximum_step), "CVodeSetMaxStep");
 
     const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) {
       require(CVodeGetDky(memory, t, 0, dense.get()), "CVodeGetDky");
@@ -153,21 +165,24 @@ class CvodeBdf final : public Integrator {
     work.newton_iterations = work.linear_solves = static_cast<std::uint64_t>(newton);
   }
 
-  MethodInfo info_{.name = "sundials:cvode_bdf",
-                   .title = "CVODE, variable-order BDF with Newton and KLU",
-                   .family = "oracle",
-                   .order = 0,
-                   .order_with_velocity_forces = 0,
-                   .stages = 1,
-                   .is_explicit = false,
-                   .is_multistep = true,
-                   .is_adaptive = true,
-                   .formula = "backward differentiation formulas of orders 1-5, steps and order chosen by error",
-                   .reference = "[Hindmarsh et al. 2005]"};
+  MethodInfo info_{
+      .name = "sundials:cvode_bdf",
+      .title = "CVODE, variable-order BDF with Newton and KLU",
+      .family = "oracle",
+      .order = 0,
+      .order_with_velocity_forces = 0,
+      .stages = 1,
+      .is_explicit = false,
+      .is_multistep = true,
+      .is_adaptive = true,
+      .formula = "backward differentiation formulas of orders 1-5, steps and order chosen by error",
+      .reference = "[Hindmarsh et al. 2005]"};
 };
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_cvode_bdf() { return std::make_unique<CvodeBdf>(); }
+std::unique_ptr<Integrator> make_cvode_bdf() {
+  return std::make_unique<CvodeBdf>();
+}
 
 }  // namespace fw::oracles

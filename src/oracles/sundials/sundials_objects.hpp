@@ -44,11 +44,16 @@ inline ContextPointer make_context() {
 
 /// A SUNDIALS call that can only fail for want of memory or by a programming error.
 inline void require(int flag, const char* call) {
-  if (flag < 0) throw SystemError(std::string("SUNDIALS: ") + call + " failed with flag " + std::to_string(flag));
+  if (flag < 0)
+    throw SystemError(std::string("SUNDIALS: ") + call + " failed with flag " + std::to_string(flag));
 }
 
 /// The entries of an N_Vector as an Eigen vector, without a copy.
-inline ConstVectorMap view(N_Vector vector, Index size) { return {N_VGetArrayPointer(vector), size}; }
-inline VectorMap mutable_view(N_Vector vector, Index size) { return {N_VGetArrayPointer(vector), size}; }
+inline ConstVectorMap view(N_Vector vector, Index size) {
+  return {N_VGetArrayPointer(vector), size};
+}
+inline VectorMap mutable_view(N_Vector vector, Index size) {
+  return {N_VGetArrayPointer(vector), size};
+}
 
 }  // namespace fw::oracles::detail
