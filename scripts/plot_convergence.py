@@ -97,7 +97,8 @@ def draw_legend(axes, rows, name, quantities):
                for index, row in enumerate(rows)]
     handles.append(Line2D([], [], linestyle="none", marker="o", color=QUIET, markerfacecolor="white",
                           label="hollow: not in the fit"))
-    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.13, 1.02), borderaxespad=0,
+    axes.set_axis_off()
+    axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, 1.02), borderaxespad=0,
                 title="fitted order with 95 % interval", alignment="left", title_fontsize=10.5)
 
 
@@ -123,14 +124,16 @@ def draw(result, by="problem"):
         page = names[first:first + ROWS_PER_FIGURE]
         quantities = {name: quantities_of(result, groups[name]) for name in page}
         columns = max(len(chosen) for chosen in quantities.values())
-        figure, axes = new_figure(result, 5.2 * columns + 5.4, 4.3 * len(page) + 0.7, len(page), columns)
+        # The last column has the legends.
+        figure, axes = new_figure(result, 5.2 * columns + 5.4, 4.3 * len(page) + 0.7, len(page), columns + 1,
+                                  gridspec_kw={"width_ratios": [1.0] * columns + [1.1]})
         for row_of_axes, name in zip(axes, page):
-            for panel in row_of_axes[len(quantities[name]):]:
+            for panel in row_of_axes[len(quantities[name]):-1]:
                 panel.remove()
             for panel, quantity in zip(row_of_axes, quantities[name]):
                 draw_panel(result, panel, quantity, groups[name])
                 panel.set_title(name, loc="left")
-            draw_legend(row_of_axes[len(quantities[name]) - 1], groups[name], other, quantities[name])
+            draw_legend(row_of_axes[-1], groups[name], other, quantities[name])
         figures.append(figure)
     return figures
 
