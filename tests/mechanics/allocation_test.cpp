@@ -12,9 +12,11 @@ std::atomic<std::size_t> allocations{0};
 // Both operator new and Eigen come down to malloc. The address sanitizer's own offers a hook; glibc's may be
 // replaced by the program and stays reachable under another name.
 #if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/allocator_interface.h>
+// Declared here since not every compiler installs its header; see <sanitizer/allocator_interface.h>.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
 namespace {
-const int hook = __sanitizer_install_malloc_and_free_hooks(
+[[maybe_unused]] const int hook = __sanitizer_install_malloc_and_free_hooks(
     [](const volatile void*, std::size_t) { allocations.fetch_add(1, std::memory_order_relaxed); },
     [](const volatile void*) {});
 }
