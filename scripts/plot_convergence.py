@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from plot_style import ALARM, QUIET, label, look, new_figure
 
 ROWS_PER_FIGURE = 3
+WIDEST_LEGEND = 66  # characters on one line
 MECHANICAL = {"error_position": "position error", "error_velocity": "velocity error"}
 QUANTITIES = {**MECHANICAL, "error": "error"}
 
@@ -45,25 +46,21 @@ def draw_series(axes, step, error, used, style):
     return int(numpy.count_nonzero(~shown))
 
 
-def draw_reference_slopes(axes, anchors, highest_step):
+def draw_reference_slopes(axes, anchors):
     """A dashed line for each predicted order, a little below the lowest series that claims it."""
-    bottom, top = numpy.log10(axes.get_ylim())
-    ends = []
-    for order, (step, error) in anchors.items():
-        at = step.argmax()
-        ends.append((0.35 * error[at] * (highest_step / step[at]) ** order, order, step.min()))
-    height = numpy.inf  # of the label above, as the labels must not cover each other
-    for end, order, low in sorted(ends, reverse=True):
-        axes.loglog([low, highest_step], [end * (low / highest_step) ** order, end], linestyle=(0, (5, 3)),
-                    linewidth=1.1, color=QUIET, zorder=1)
-        height = min((numpy.log10(end) - bottom) / (top - bottom), height - 0.06)
-        axes.annotate(f"slope {order:g}", (1.0, height), xycoords="axes fraction", fontsize=9.5, color=QUIET,
-                      va="center", annotation_clip=False)
+    for order, (step, error) in sorted(anchors.items()):
+        low, high = step.min(), step.max()
+        end = 0.35 * error[step.argmax()]
+        start = end * (low / high) ** order
+        axes.loglog([low, high], [start, end], linestyle=(0, (5, 3)), linewidth=1.1, color=QUIET, zorder=1)
+        # At the lower ends, since there lines of different slope lie furthest apart.
+        axes.annotate(f"slope {order:g}", (low, start), xytext=(6, -1), textcoords="offset points", fontsize=9.5,
+                      color=QUIET, va="top", zorder=1.5)
 
 
 def draw_panel(result, axes, quantity, rows):
     """All series of one panel."""
-    missing, anchors, errors, steps = 0, {}, [], []
+    missing, anchors, errors = 0, {}, []
     for index, row in enumerate(rows):
         case = result.case_of(row)
         step, error = result.values("step", case), result.values(quantity, case)
@@ -73,15 +70,14 @@ def draw_panel(result, axes, quantity, rows):
         fitted = used & drawable(step, error)
         expected = float(row["expected_order"])
         errors.append(error[drawable(step, error)])
-        steps.append(step[drawable(step, error)])
         if expected > 0 and numpy.count_nonzero(fitted) > 1:
             anchor = (step[fitted], error[fitted])
             if expected not in anchors or anchor[1].max() < anchors[expected][1].max():
                 anchors[expected] = anchor
     errors = numpy.concatenate(errors)
     if errors.size:
-        axes.set_ylim(errors.min() / 3, errors.max() * 3)  # set by the data, not by the reference slopes
-        draw_reference_slopes(axes, anchors, numpy.concatenate(steps).max())
+        axes.set_ylim(errors.min() / 12, errors.max() * 3)  # set by the data, with room for a label below
+        draw_reference_slopes(axes, anchors)
     unit_step, unit_error = result.unit("step", case), result.unit(quantity, case)
     axes.set_xlabel(label("step h", unit_step))
     axes.set_ylabel(label(QUANTITIES[quantity], unit_error))
@@ -93,8 +89,11 @@ def draw_panel(result, axes, quantity, rows):
 def draw_legend(axes, rows, name, quantities):
     mechanical = len(quantities) == 2 and all("order_position" in row for row in rows)
     suffixes = {"x": "_position", "v": "_velocity"} if mechanical else {"": ""}
-    handles = [Line2D([], [], **look(index), linewidth=1.2, label=f"{row[name]}: {order_text(row, suffixes)}")
-               for index, row in enumerate(rows)]
+    handles = []
+    for index, row in enumerate(rows):
+        orders = order_text(row, suffixes)
+        space = " " if len(row[name]) + len(orders) <= WIDEST_LEGEND else "\n"
+        handles.append(Line2D([], [], **look(index), linewidth=1.2, label=f"{row[name]}:{space}{orders}"))
     handles.append(Line2D([], [], linestyle="none", marker="o", color=QUIET, markerfacecolor="white",
                           label="hollow: not in the fit"))
     axes.set_axis_off()
