@@ -21,9 +21,9 @@ struct Solution {
 
 /// What is known of a scheme, for lists, claims and checks.
 struct MethodInfo {
-  std::string name;    ///< as it is called on the command line, for example "velocity_verlet"
-  std::string title;   ///< for people, for example "Velocity Verlet"
-  std::string family;  ///< for example "explicit Runge-Kutta"
+  std::string name{};    ///< as it is called on the command line, for example "velocity_verlet"
+  std::string title{};   ///< for people, for example "Velocity Verlet"
+  std::string family{};  ///< for example "explicit Runge-Kutta"
   int order = 0;  ///< order of accuracy for forces that depend on position (and for any ẏ = f); 0: variable
   int order_with_velocity_forces = 0;  ///< order where forces depend on velocity
   int stages = 1;                      ///< right-hand sides per step, first-same-as-last not counted twice
@@ -34,8 +34,8 @@ struct MethodInfo {
   bool is_a_stable = false;
   bool is_l_stable = false;
   bool needs_second_order = false;  ///< works on M q̈ = f(t, q, v) only
-  std::string formula;              ///< one step in formula
-  std::string reference;            ///< literature
+  std::string formula{};            ///< one step in formula
+  std::string reference{};          ///< literature
 };
 
 /// A time integrator. It is immutable; all state of a run lives in the run.

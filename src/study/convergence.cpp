@@ -45,6 +45,8 @@ struct Level {
 
 /// Rounding of double arithmetic relative to the solution's scale; the fit recognises what grows above it.
 constexpr double rounding_floor = 2e-13;
+/// Local slopes in the fit differ from the finest ones by no more than half of what a verdict tolerates.
+constexpr double slope_tolerance = 0.05;
 /// A reference has to be this much better than every error that is reported.
 constexpr double reference_margin = 0.01;
 
@@ -190,7 +192,8 @@ class ConvergenceCase {
       errors.push_back(level.error.*quantity);
     }
     const double reference_error = reference_.states.front().largest_error();
-    return analysis::fit_order(steps, errors, error_floor(rounding_floor * scale, reference_error));
+    return analysis::fit_order(steps, errors, error_floor(rounding_floor * scale, reference_error),
+                               slope_tolerance);
   }
 
   CaseResult judge() {

@@ -13,6 +13,8 @@ namespace {
 
 using namespace detail;
 
+constexpr int max_steps_without_progress = 20;
+
 /// What CVODE's callbacks need; one per run.
 struct Run {
   const OdeSystem& system;
@@ -130,15 +132,25 @@ class CvodeBdf final : public Integrator {
       out = view(dense.get(), n);
     };
     double t = ivp.t0;
+    int steps_without_progress = 0;
     for (std::uint64_t step = 1;; ++step) {
       if (step > tolerances->maximum_steps) {
         solution.status = {StatusCode::step_limit,
                            fmt::format("{} steps did not reach the end: stopped at t = {:.6g}", step - 1, t)};
         break;
       }
+      const double t_before = t;
       const int flag = CVode(memory, ivp.t1, y.get(), &t, CV_ONE_STEP);
       if (flag < 0) {
         solution.status = status_of_flag(flag, run, t);
+        break;
+      }
+      // CVODE only warns of steps below the rounding of t and would go on with them for ever.
+      steps_without_progress = t > t_before ? 0 : steps_without_progress + 1;
+      if (steps_without_progress == max_steps_without_progress) {
+        solution.status = {
+            StatusCode::step_too_small,
+            fmt::format("CVODE at t = {:.6g}: the step fell below the rounding of t: {}", t, run.message)};
         break;
       }
       const bool last = flag == CV_TSTOP_RETURN || t >= ivp.t1;

@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "allocation_counter.hpp"
+#include "network.hpp"
+
+namespace fw::integrators {
+namespace {
+
+/// Largest deviation of linear and angular momentum from the start, over a run.
+class MomentumObserver final : public Observer {
+ public:
+  explicit MomentumObserver(const mechanics::MassSpringSystem& system) : system_(system) {}
+
+  bool observe(const StepView& view) override {
+    const Index n = view.state.size() / 2;
+    const Vec3<double> p = system_.linear_momentum(view.state.tail(n));
+    const Vec3<double> l = system_.angular_momentum(view.state.head(n), view.state.tail(n));
+    if (view.index == 0) {
+      p0_ = p;
+      l0_ = l;
+    }
+    linear_ = std::max(linear_, norm(p - p0_));
+    angular_ = std::max(angular_, norm(l - l0_));
+    return true;
+  }
+  double linear() const { return linear_; }
+  double angular() const { return angular_; }
+
+ private:
+  const mechanics::MassSpringSystem& system_;
+  Vec3<double> p0_, l0_;
+  double linear_ = 0.0, angular_ = 0.0;
+};
+
+struct Drift {
+  double linear, angular;
+};
+
+Drift momentum_drift(const Integrator& scheme, const Ivp& ivp, double step) {
+  const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system);
+  MomentumObserver observer(system);
+  const Solution solution = scheme.solve(ivp, FixedStep{.step = step}, observer);
+  EXPECT_TRUE(solution.status.ok()) << scheme.info().name << ": " << solution.status.describe();
+  return {observer.linear(), observer.angular()};
+}
+
+constexpr int long_run = 100'000;
+
+TEST(FreeNetwork, KeepsItsMomentaToRoundingOverAHundredThousandSteps) {
+  const double h = 1e-3;
+  for (bool damped : {false, true}) {
+    const Ivp ivp = random_network(21, {.is_damped = damped, .is_free = true}, h * long_run);
+    for (const auto& scheme :
+         {make_symplectic_euler(), make_velocity_verlet(), make_verlet(VerletVelocity::central)}) {
+      const Drift drift = momentum_drift(*scheme, ivp, h);
+      // Momenta are about 1 kg·m/s; √(10⁵) roundings of 1e-16, and the growth of positions as the network
+      // flies on.
+      EXPECT_LT(drift.linear, 1e-11) << scheme->info().name;
+      EXPECT_LT(drift.angular, 1e-10) << scheme->info().name;
+    }
+  }
+}
+
+TEST(FreeNetwork, KeepsItsLinearMomentumUnderEveryScheme) {
+  const double h = 1e-3;
+  const Ivp ivp = random_network(22, {.is_free = true}, 2.0);
+  for (const auto& scheme : all_schemes()) {
+    const bool iterates =
+        scheme->info().name == "implicit_euler_linearised";  // to the tolerance of its solver
+    EXPECT_LT(momentum_drift(*scheme, ivp, h).linear, iterates ? 1e-9 : 1e-12) << scheme->info().name;
+  }
+}
+
+TEST(FreeNetwork, LosesAngularMomentumUnderImplicitAndExplicitEuler) {
+  // Negative control of the observer: these schemes are known not to conserve it.
+  const Ivp ivp = random_network(23, {.is_damped = false, .is_free = true}, 2.0);
+  EXPECT_GT(momentum_drift(*make_implicit_euler(), ivp, 1e-2).angular, 1e-4);
+  EXPECT_GT(momentum_drift(*make_explicit_runge_kutta(tableaus().front()), ivp, 1e-2).angular, 1e-4);
+}
+
+TEST(FixedPoints, AreBitIdenticalToTheirStart) {
+  const Ivp ivp = random_network(24, {}, 1.0);
+  const auto& fixed = ivp.system->second_order()->fixed();
+  const Index n = ivp.y0.size() / 2;
+  for (const auto& scheme : all_schemes()) {
+    const Solution solution = run(*scheme, ivp, 1.0 / 128.0);
+    ASSERT_TRUE(solution.status.ok()) << scheme->info().name << ": " << solution.status.describe();
+    int count = 0;
+    for (Index i = 0; i < n; ++i) {
+      if (!fixed[static_cast<std::size_t>(i)]) continue;
+      ++count;
+      EXPECT_EQ(solution.state[i], ivp.y0[i]) << scheme->info().name;
+      EXPECT_EQ(solution.state[n + i], 0.0) << scheme->info().name;
+    }
+    EXPECT_EQ(count, 6);
+  }
+}
+
+TEST(Schemes, GiveTheSameBitsWhenRunTwice) {
+  const Ivp ivp = random_network(25, {}, 1.0);
+  for (const auto& scheme : all_schemes()) {
+    EXPECT_EQ(run(*scheme, ivp, 1.0 / 128.0).state, run(*scheme, ivp, 1.0 / 128.0).state)
+        << scheme->info().name;
+  }
+}
+
+std::size_t allocations_per_run(const Integrator& scheme, int steps) {
+  const Ivp ivp = random_network(26, {}, steps / 1024.0);
+  return allocations_of([&] { run(scheme, ivp, 1.0 / 1024.0); });
+}
+
+TEST(Schemes, AllocateNothingAfterTheFirstStep) {
+  auto schemes = all_schemes();
+  schemes.erase(schemes.end() - 2);  // Cholesky: Eigen's factorisation takes work space of its own each time
+  for (const auto& scheme : schemes) {
+    EXPECT_EQ(allocations_per_run(*scheme, 264), allocations_per_run(*scheme, 8)) << scheme->info().name;
+  }
+}
+
+}  // namespace
+}  // namespace fw::integrators

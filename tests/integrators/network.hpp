@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/implicit_euler.hpp"
+#include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/symplectic_euler.hpp"
+#include "integrators/tableaus.hpp"
+#include "integrators/velocity_verlet.hpp"
+#include "integrators/verlet.hpp"
+#include "mechanics/mass_spring_system.hpp"
+#include "mechanics/random_model.hpp"
+
+namespace fw::integrators {
+
+/// A connected network: a random closed path through all particles and random chords, at positions that keep
+/// a distance from each other (a perturbed lattice), with velocities up to 0.5 m/s.
+struct NetworkOptions {
+  mechanics::SpringLaw law = mechanics::SpringLaw::hooke;
+  bool is_damped = true;
+  bool is_free = false;  ///< neither gravity, drag nor fixed particles
+  int particles = 8;
+};
+
+inline Ivp random_network(std::uint64_t seed, const NetworkOptions& options, double end_time) {
+  mechanics::RandomModels random(seed);
+  mechanics::MassSpringModel model;
+  const int n = options.particles;
+  Ivp ivp;
+  ivp.y0 = Vector::Zero(6 * n);
+  for (int i = 0; i < n; ++i) {
+    model.mass.push_back(random.uniform(0.3, 2.5));
+    const Vec3<double> lattice{static_cast<double>(i % 2), static_cast<double>(i / 2 % 2),
+                               static_cast<double>(i / 4)};
+    store3(ivp.y0.data(), i, lattice + random.point(0.2));
+    store3(ivp.y0.data() + 3 * n, i, random.point(0.5));
+  }
+  model.springs.law = options.law;
+  const auto connect = [&](int i, int j) {
+    random.add_spring(model.springs, i, j, options.is_damped);
+    const double length = norm(load3(ivp.y0.data(), j) - load3(ivp.y0.data(), i));
+    model.springs.rest_length.back() = length * random.uniform(0.8, 1.2);
+    if (options.is_damped) model.springs.damping.back() = random.uniform(0.05, 1.0);
+  };
+  for (int i = 0; i < n; ++i) connect(i, (i + 1) % n);
+  for (int chord = 0; chord < n; ++chord) {
+    const int i = random.integer(0, n - 1);
+    connect(i, (i + random.integer(2, n - 2)) % n);
+  }
+  if (!options.is_free) {
+    model.gravity = random.point(5.0);
+    if (options.is_damped) model.drag = random.uniform(0.01, 0.2);
+    model.fixed = {1, 4};
+    for (int i : model.fixed) store3(ivp.y0.data() + 3 * n, i, Vec3<double>{});
+  }
+  ivp.t1 = end_time;
+  ivp.system = std::make_shared<const mechanics::MassSpringSystem>(std::move(model));
+  return ivp;
+}
+
+/// Every hand-written fixed-step scheme.
+inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
+  std::vector<std::unique_ptr<Integrator>> list;
+  for (const ButcherTableau& tableau : tableaus()) list.push_back(make_explicit_runge_kutta(tableau));
+  list.push_back(make_symplectic_euler());
+  list.push_back(make_verlet(VerletVelocity::central));
+  list.push_back(make_verlet(VerletVelocity::backward));
+  list.push_back(make_velocity_verlet());
+  list.push_back(make_implicit_euler());
+  for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
+                    linalg::LinearSolverKind::sparse_lu}) {
+    list.push_back(make_implicit_euler_linearised({.linear_solver = {.kind = kind}}));
+  }
+  return list;
+}
+
+inline Solution run(const Integrator& integrator, const Ivp& ivp, double step) {
+  NullObserver observer;
+  return integrator.solve(ivp, FixedStep{.step = step}, observer);
+}
+
+}  // namespace fw::integrators
