@@ -52,6 +52,10 @@ INSTANTIATE_TEST_SUITE_P(
     Simulate, BadCommand,
     ::testing::Values(
         BadInput{"WithoutScene", {"simulate", "--method", "rk4", "--t-end", "1"}, {}, {"scene"}},
+        BadInput{"SceneIsADevice",
+                 {"simulate", "/dev/zero", "--method", "rk4", "--step", "0.1", "--t-end", "1", "-o", "a.h5"},
+                 {},
+                 {"/dev/zero", "device"}},
         simulate("WithoutMethod", {"--step", "0.1", "--t-end", "1"}, {"--method"}),
         simulate("WithoutEnd", {"--method", "rk4", "--step", "0.1"}, {"--t-end"}),
         simulate("WithoutStep", {"--method", "rk4", "--t-end", "1"}, {"rk4", "--step"}),

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@ namespace {
 
 using store::test::ScratchDirectory;
 using store::test::write_bytes;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -180,6 +182,44 @@ TEST_F(Simulate, DrawsNoProgressBarWhereStandardErrorIsNoTerminal) {
   EXPECT_GT(result.seconds, 0.15) << "too short for a bar to be due";
   EXPECT_EQ(result.err, "");
   EXPECT_THAT(result.out, Not(HasSubstr("\r")));
+}
+
+TEST_F(Simulate, DrawsAProgressBarOnATerminalAndRemovesIt) {
+  int terminal = -1, end = -1;
+  ASSERT_EQ(::openpty(&terminal, &end, nullptr, nullptr, nullptr), 0);
+  const ProcessResult result = run(scratch_.path(),
+                                   {"simulate", "s.toml", "-o", "a.h5", "--method", "rk4", "--step", "1e-6",
+                                    "--t-end", "2", "--frames", "2"},
+                                   [&] { return ::dup2(end, STDERR_FILENO) >= 0; });
+  ::close(end);
+  std::string drawn;
+  char buffer[4096];
+  for (ssize_t size; (size = ::read(terminal, buffer, sizeof buffer)) > 0;) {
+    drawn.append(buffer, static_cast<std::size_t>(size));
+  }
+  ::close(terminal);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_GT(result.seconds, 0.15) << "too short for a bar to be due";
+  EXPECT_THAT(drawn, AllOf(HasSubstr("[#"), HasSubstr("steps/s"), HasSubstr(" left  t = ")));
+  EXPECT_TRUE(drawn.ends_with("\r\033[K")) << drawn;
+}
+
+TEST_F(Simulate, TellsAFailureToReadFromAnEmptyScene) {
+  const ProcessResult result = run(scratch_.path(), {"simulate", "/proc/self/mem", "-o", "a.h5", "--method",
+                                                     "rk4", "--step", "1", "--t-end", "1"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("/proc/self/mem: reading failed: Input/output error"));
+  EXPECT_THAT(scratch_.names(), ElementsAre("s.toml"));
+}
+
+TEST_F(Simulate, TakesNamesThatAreNotUtf8) {
+  write_bytes(scratch_ / "\xff it's.toml", pendulum);
+  const ProcessResult result = run(scratch_.path(), {"simulate", "\xff it's.toml", "--method", "rk4",
+                                                     "--step", "0.1", "--t-end", "1", "-o", "\xff.h5"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::filesystem::rename(scratch_ / "\xff.h5", scratch_ / "a.h5");
+  inspect("assert \"\\ufffd it'\\\\''s.toml\" in f.attrs['command_line'], f.attrs['command_line']\n",
+          {file("a.h5")});
 }
 
 TEST_F(Simulate, KeepsWhatIsFinishedWhenInterrupted) {
