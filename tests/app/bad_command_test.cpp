@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "my thesis\n"),
         rk4("TheSceneItself", {"-o", "s.toml"}, {"s.toml", "will not overwrite"}),
         with_file(rk4("ForeignDefaultFile", {}, {"s-rk4.h5", "will not overwrite"}), "s-rk4.h5", ""),
-        rk4("Device", {"-o", "/dev/null"}, {"/dev/null", "no regular file"}),
+        with_file(rk4("Pipe", {"-o", "p"}, {"\"p\"", "no regular file"}), "p|", ""),
         rk4("ProcessFileSystem", {"-o", "/proc/a.h5"}, {"/proc/a.h5"}),
         rk4("SystemFileSystem", {"-o", "/sys/a.h5"}, {"/sys/a.h5"}),
         rk4("NameTooLong", {"-o", std::string(300, 'a') + ".h5"}, {"too long"}),

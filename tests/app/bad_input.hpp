@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -17,7 +19,7 @@ namespace fw::app::test {
 struct BadInput {
   std::string name;                                        ///< of the case, letters and digits
   std::vector<std::string> arguments;                      ///< of `federwerk`
-  std::vector<std::pair<std::string, std::string>> files;  ///< in the working directory: name, content
+  std::vector<std::pair<std::string, std::string>> files;  ///< name/ is a directory, name| a pipe
   std::vector<std::string> message;                        ///< what the message has to contain
 };
 
@@ -34,7 +36,9 @@ inline std::map<std::string, std::string> snapshot(const std::filesystem::path& 
   std::map<std::string, std::string> content;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(directory)) {
     const std::string name = entry.path().lexically_relative(directory).string();
-    content[name] = entry.is_directory() ? "/" : store::test::read_bytes(entry.path());
+    content[name] = entry.is_directory()       ? "/"
+                    : !entry.is_regular_file() ? "|"
+                                               : store::test::read_bytes(entry.path());
   }
   return content;
 }
@@ -45,6 +49,10 @@ inline void expect_refused(const BadInput& bad) {
   for (const auto& [name, content] : bad.files) {
     if (name.ends_with('/')) {
       std::filesystem::create_directory(scratch / name);
+    } else if (name.ends_with('|')) {
+      // A pipe of the test's own, not a device of the machine, which a program without the check would
+      // replace.
+      ASSERT_EQ(::mkfifo((scratch / name.substr(0, name.size() - 1)).c_str(), 0600), 0);
     } else {
       store::test::write_bytes(scratch / name, content);
     }

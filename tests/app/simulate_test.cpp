@@ -241,31 +241,6 @@ TEST_F(Simulate, KeepsWhatIsFinishedWhenInterrupted) {
   }
 }
 
-TEST_F(Simulate, EndsAtOnceOnASecondSignal) {
-  // One step takes many seconds, so that the flag which the first signal sets is not looked at soon.
-  write_bytes(scratch_ / "s.toml",
-              "[generate]\nkind = 'cloth'\ncounts = [600, 600]\nspacing = 1\nmass = 1\nstiffness = 1e4\n"
-              "pinned = 'top_edge'\n[world]\ngravity = [0, 0, -9.81]\n");
-  for (const int second : {SIGINT, SIGTERM}) {
-    Process process(scratch_.path(), {"simulate", "s.toml", "-o", "a.h5", "--method", "implicit_euler",
-                                      "--step", "1", "--t-end", "9"});
-    const auto has_begun = [&] { return scratch_.names().size() > 1; };  // its temporary file
-    for (int k = 0; k < 2000 && !has_begun(); ++k) ::usleep(5'000);
-    ASSERT_TRUE(has_begun());
-    ::usleep(300'000);
-    process.send(SIGINT);
-    ::usleep(100'000);
-    process.send(second);
-    const ProcessResult result = process.wait();
-    EXPECT_EQ(result.signal, second) << result.exit_code << result.err;
-    EXPECT_LT(result.seconds, 20.0);
-    EXPECT_FALSE(std::filesystem::exists(scratch_ / "a.h5"));
-    for (const std::string& name : scratch_.names()) {
-      if (name != "s.toml") std::filesystem::remove(scratch_ / name);
-    }
-  }
-}
-
 TEST_F(Simulate, KeepsTheStatesBeforeABlowUp) {
   write_bytes(scratch_ / "s.toml",
               "[particles]\nposition = [[0,0,0], [1.1,0,0]]\nmass = 1\nfixed = [0]\n"
