@@ -11,6 +11,7 @@
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "integrators/tableaus.hpp"
+#include "scene/generators.hpp"
 #include "store/json_writer.hpp"
 
 namespace fw::app {
@@ -148,6 +149,16 @@ std::string problem_json(const ProblemEntry& entry) {
   return json.text() + "\n";
 }
 
+/// An entry of which no more is known than its title and description.
+std::string entry_text(const char* type, const std::string& name, const std::string& title,
+                       const std::string& description, bool as_json) {
+  if (!as_json) return fmt::format("{}\n{}\n\n  {}\n", name, title, description);
+  JsonWriter json;
+  json.begin_object().key("type").value(type).key("name").value(name).key("title").value(title);
+  json.key("description").value(description).end_object();
+  return json.text() + "\n";
+}
+
 std::string describe(const std::string& name, bool as_json) {
   std::vector<std::string> names;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
@@ -160,14 +171,15 @@ std::string describe(const std::string& name, bool as_json) {
   }
   for (const study::StudyKind& kind : catalog::study_kinds()) {
     if (kind.name == name) {
-      if (!as_json) return fmt::format("{}\n{}\n\n  {}\n", kind.name, kind.title, kind.description);
-      JsonWriter json;
-      json.begin_object().key("type").value("study").key("name").value(kind.name).key("title").value(
-          kind.title);
-      json.key("description").value(kind.description).end_object();
-      return json.text() + "\n";
+      return entry_text("study", kind.name, kind.title, kind.description, as_json);
     }
     names.push_back(kind.name);
+  }
+  for (const scene::GeneratorInfo& generator : scene::generators()) {
+    if (generator.name == name) {
+      return entry_text("scene", generator.name, generator.title, generator.description, as_json);
+    }
+    names.push_back(generator.name);
   }
   throw InputError(fmt::format(
       "unknown name \"{}\"{}; \"federwerk list methods\" and \"federwerk list problems\" show all", name,
@@ -178,7 +190,7 @@ std::string describe(const std::string& name, bool as_json) {
 
 void add_describe_command(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("describe", "Prints all that is known of one method, problem or study kind");
+      app.add_subcommand("describe", "Prints all that is known of one method, problem, scene or study kind");
   auto name = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   command->add_option("name", *name, "Its name")->required()->type_name("NAME");

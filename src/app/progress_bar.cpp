@@ -33,10 +33,13 @@ ProgressBar::~ProgressBar() {
   clear();
 }
 
+bool ProgressBar::is_due() const {
+  return is_terminal_ && Clock::now() - last_ >= std::chrono::milliseconds(100);
+}
+
 void ProgressBar::update(double fraction, double count, const std::string& label) {
-  if (!is_terminal_) return;
+  if (!is_due()) return;
   const Clock::time_point now = Clock::now();
-  if (now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const double elapsed = std::chrono::duration<double>(now - start_).count();

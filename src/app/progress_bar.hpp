@@ -13,12 +13,13 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Draws at most ten times a second. `fraction` in [0, 1], `count` in units, `label` at the end of the
+  /// Whether `update` would draw now: at most ten times a second, and only on a terminal.
+  bool is_due() const;
+  /// Draws if it is due. `fraction` in [0, 1], `count` in units, `label` at the end of the
   /// line.
   void update(double fraction, double count, const std::string& label);
   /// Removes the bar, so that other text can be printed.
   void clear();
-  bool is_visible() const { return is_terminal_; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -16,6 +16,7 @@
 #include "core/error.hpp"
 #include "core/sha256.hpp"
 #include "store/study_store.hpp"
+#include "store/write_target.hpp"
 #include "study/runner.hpp"
 
 namespace fw::app {
@@ -38,7 +39,7 @@ std::string program_identity() {
 }
 
 struct PlannedStudy {
-  std::filesystem::path output;
+  std::filesystem::path output;  ///< result file
   study::Plan plan;
 };
 
@@ -111,15 +112,22 @@ int run(const RunArguments& arguments, const std::string& command_line) {
   const std::vector<PlannedStudy> studies = read_studies(arguments);
   std::error_code error;
   std::filesystem::create_directories(arguments.directory, error);
-  if (error)
-    throw InputError(fmt::format("{}: cannot make this directory: {}", arguments.directory, error.message()));
+  if (error) {
+    const std::string message =
+        fmt::format("cannot make the directory \"{}\": {}", arguments.directory, error.message());
+    if (error == std::errc::no_space_on_device || error == std::errc::io_error) throw SystemError(message);
+    throw InputError(message);
+  }
+  for (const PlannedStudy& planned : studies) store::check_writable_target(planned.output);
   const std::atomic<bool>& interrupted = install_interrupt_flag();
   const std::string program = program_identity();
   std::size_t fails = 0;
-  for (const PlannedStudy& planned : studies) {
+  for (std::size_t k = 0; k < studies.size(); ++k) {
+    const PlannedStudy& planned = studies[k];
     bool complete = true;
     fails += run_study(planned, arguments, command_line, program, interrupted, complete).fails;
-    if (interrupted) {
+    const bool is_last = k + 1 == studies.size();
+    if (interrupted && !(complete && is_last)) {
       fmt::print(stderr,
                  "federwerk: interrupted; finished cases are kept, the same command goes on from here\n");
       return exit_failure;

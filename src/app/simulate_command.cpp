@@ -26,8 +26,10 @@ struct SimulateArguments {
   std::string scene, method, output;
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0;
   bool has_step = false, has_relative = false, has_absolute = false, xdmf = false;
-  std::uint64_t frames = 101;
+  std::int64_t frames = 101;
 };
+
+constexpr std::int64_t largest_frame_count = 1'000'000'000;
 
 /// Passes steps on to the frames, shows progress and listens to the user's interrupt.
 class SimulationObserver final : public Observer {
@@ -37,7 +39,7 @@ class SimulationObserver final : public Observer {
 
   bool observe(const StepView& view) override {
     frames_.observe(view);
-    if (bar_.is_visible() && view.index % 16 == 0) {
+    if (bar_.is_due()) {
       bar_.update(view.time / end_time_, static_cast<double>(view.index),
                   fmt::format("t = {:.4g} s", view.time));
     }
@@ -84,12 +86,17 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
   return FixedStep{.step = arguments.step};
 }
 
-/// Tells of a shorter last step, or refuses it for multistep methods, before anything is computed.
-void check_last_step(const StepControl& control, const MethodInfo& info, double end_time) {
+/// Refuses a step that does not divide the interval if the method needs that. How the interval divides.
+StepCount check_interval(const StepControl& control, const MethodInfo& info, double end_time) {
   const auto* fixed = std::get_if<FixedStep>(&control);
-  if (fixed == nullptr) return;
-  const StepCount count = count_steps(0.0, end_time, fixed->step);
-  if (count.remainder > 0.0 && !info.is_multistep) {
+  if (fixed == nullptr) return {};
+  return info.is_multistep ? count_whole_steps(info.name, 0.0, end_time, fixed->step)
+                           : count_steps(0.0, end_time, fixed->step);
+}
+
+void tell_of_short_last_step(const StepControl& control, const StepCount& count, double end_time) {
+  const auto* fixed = std::get_if<FixedStep>(&control);
+  if (fixed != nullptr && count.remainder > 0.0) {
     fmt::print(
         stderr,
         "federwerk: note: the end time {} is not a whole number of steps {}; the last step is {:.6g} s\n",
@@ -125,13 +132,21 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
     throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
   }
-  if (arguments.frames < 2)
-    throw InputError(fmt::format("--frames: found {}, expected at least 2", arguments.frames));
-  if (const auto* fixed = std::get_if<FixedStep>(&control)) count_steps(0.0, arguments.end_time, fixed->step);
+  if (arguments.frames < 2 || arguments.frames > largest_frame_count) {
+    throw InputError(fmt::format("--frames: found {}, expected an integer from 2 to {}", arguments.frames,
+                                 largest_frame_count));
+  }
+  const StepCount count = check_interval(control, integrator->info(), arguments.end_time);
   if (arguments.output.empty()) arguments.output = default_output(arguments);
   store::check_writable_target(arguments.output);
-  if (arguments.xdmf)
-    store::check_writable_place(std::filesystem::path(arguments.output).replace_extension(".xdmf"));
+  if (arguments.xdmf) {
+    const std::filesystem::path xdmf = std::filesystem::path(arguments.output).replace_extension(".xdmf");
+    if (xdmf == arguments.output) {
+      throw InputError(fmt::format("--xdmf would overwrite the result file \"{}\", expected another ending",
+                                   arguments.output));
+    }
+    store::check_writable_place(xdmf);
+  }
 
   scene::Scene scene = scene::read_scene(arguments.scene);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
@@ -147,18 +162,15 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (integrator->info().needs_second_order && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
-  check_last_step(control, integrator->info(), arguments.end_time);
+  tell_of_short_last_step(control, count, arguments.end_time);
 
   const std::atomic<bool>& interrupted = install_interrupt_flag();
-  const StepCount count = std::holds_alternative<FixedStep>(control)
-                              ? count_steps(0.0, arguments.end_time, std::get<FixedStep>(control).step)
-                              : StepCount{};
-  const std::uint64_t expected = std::holds_alternative<FixedStep>(control)
-                                     ? std::min(arguments.frames, count.total() + 1)
-                                     : arguments.frames;
+  const auto wanted = static_cast<std::uint64_t>(arguments.frames);
+  const std::uint64_t expected =
+      std::holds_alternative<FixedStep>(control) ? std::min(wanted, count.total() + 1) : wanted;
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
                                  static_cast<Index>(expected));
-  study::FrameSelector frames(ivp.t0, ivp.t1, control, arguments.frames, writer);
+  study::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, writer);
   SimulationObserver observer(frames, arguments.end_time, interrupted);
   Solution solution = integrator->solve(ivp, control, observer);
   observer.finish();

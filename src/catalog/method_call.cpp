@@ -16,10 +16,11 @@ MethodCall parse_method_call(const std::string& text) {
   if (text.back() != ']') malformed("found no closing ]");
   MethodCall call{text.substr(0, open), {}};
   std::string rest = text.substr(open + 1, text.size() - open - 2);
-  while (!rest.empty()) {
+  for (bool more = !rest.empty(); more;) {
     const auto comma = rest.find(',');
     const std::string item = rest.substr(0, comma);
-    rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
+    more = comma != std::string::npos;
+    if (more) rest = rest.substr(comma + 1);
     const auto equals = item.find('=');
     if (equals == std::string::npos || equals == 0)
       malformed(fmt::format("found \"{}\" without option=value", item));

@@ -5,6 +5,7 @@
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "problems/celestial.hpp"
+#include "problems/cloth.hpp"
 #include "problems/fermi_pasta_ulam.hpp"
 #include "problems/linear_chain.hpp"
 #include "problems/oscillators.hpp"
@@ -25,6 +26,7 @@ const std::vector<ProblemEntry>& problems() {
                                                  driven_duffing_entry(),
                                                  spring_pendulum_entry(),
                                                  linear_chain_entry(),
+                                                 cloth_entry(),
                                                  kepler_entry(),
                                                  henon_heiles_entry(),
                                                  pleiades_entry(),

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "core/checked_table_section.hpp"
@@ -25,14 +25,22 @@ std::string read_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::directory) {
     throw InputError(fmt::format("{}: found a directory, expected a TOML file", path.string()));
   }
+  using std::filesystem::file_type;
+  if (status.type() == file_type::character || status.type() == file_type::block) {
+    throw InputError(fmt::format("{}: found a device, expected a TOML file", path.string()));
+  }
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-  std::ostringstream text;
-  text << file.rdbuf();  // sets failbit if the file is empty, which is a valid document
+  // Not `text << file.rdbuf()`, which takes a failure to read for the end of the file.
+  std::string text;
+  std::array<char, 65536> buffer{};
+  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad())
     throw SystemError(fmt::format("{}: reading failed: {}", path.string(), std::strerror(errno)));
-  return std::move(text).str();
+  return text;
 }
 
 }  // namespace

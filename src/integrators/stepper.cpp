@@ -23,17 +23,6 @@ Status check_state(ConstVectorRef y, double t, std::uint64_t step) {
   return {};
 }
 
-void refuse_broken_interval(const MethodInfo& info, const Ivp& ivp, double h, const StepCount& count) {
-  const double length = ivp.t1 - ivp.t0;
-  const double larger = length / static_cast<double>(std::max<std::uint64_t>(count.whole, 1));
-  const double smaller = length / static_cast<double>(count.whole + 1);
-  throw InputError(
-      fmt::format("step {} does not divide the interval of length {}: multistep method \"{}\" needs a whole "
-                  "number of steps; "
-                  "the nearest steps that fit are {} and {}",
-                  h, length, info.name, smaller, larger));
-}
-
 }  // namespace
 
 Solution FixedStepIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
@@ -42,10 +31,9 @@ Solution FixedStepIntegrator::do_solve(const Ivp& ivp, const StepControl& contro
     throw InputError(fmt::format("method \"{}\" has a fixed step: give a step, not tolerances", info_.name));
   }
   const double h = fixed->step;
-  const StepCount count = count_steps(ivp.t0, ivp.t1, h);
-  if (count.remainder > 0.0 && (info_.is_multistep || !fixed->allow_short_last_step)) {
-    refuse_broken_interval(info_, ivp, h, count);
-  }
+  const StepCount count = fixed->allow_short_last_step && !info_.is_multistep
+                              ? count_steps(ivp.t0, ivp.t1, h)
+                              : count_whole_steps(info_.name, ivp.t0, ivp.t1, h);
   const std::function<void(double, VectorRef)> no_dense_output;
   Solution solution;
   solution.time = ivp.t0;

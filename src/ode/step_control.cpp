@@ -27,4 +27,19 @@ StepCount count_steps(double t0, double t1, double step) {
   return {.whole = static_cast<std::uint64_t>(whole), .remainder = (t1 - t0) - whole * step};
 }
 
+StepCount count_whole_steps(std::string_view method, double t0, double t1, double step) {
+  const StepCount count = count_steps(t0, t1, step);
+  if (count.remainder <= 0.0) return count;
+  const double length = t1 - t0;
+  const double smaller = length / static_cast<double>(count.whole + 1);
+  const std::string fitting = count.whole == 0
+                                  ? fmt::format("the largest step that fits is {}", smaller)
+                                  : fmt::format("the nearest steps that fit are {} and {}", smaller,
+                                                length / static_cast<double>(count.whole));
+  throw InputError(
+      fmt::format("step {} does not divide the interval of length {}: method \"{}\" needs a whole number of "
+                  "steps; {}",
+                  step, length, method, fitting));
+}
+
 }  // namespace fw

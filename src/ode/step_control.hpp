@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <variant>
 
 namespace fw {
@@ -35,5 +36,9 @@ struct StepCount {
 /// Divides t₁ − t₀ by h. A quotient within a relative 1e-9 of a whole number counts as whole. Throws
 /// InputError unless h > 0, t₁ > t₀, both finite, and there are fewer than 2⁵³ steps.
 StepCount count_steps(double t0, double t1, double step);
+
+/// The same where no shorter last step is possible, as for multistep schemes: throws InputError that names
+/// `method` and the nearest steps that divide the interval if h does not.
+StepCount count_whole_steps(std::string_view method, double t0, double t1, double step);
 
 }  // namespace fw

@@ -1,5 +1,7 @@
 #include "store/attribute.hpp"
 
+#include "store/utf8.hpp"
+
 namespace fw::store {
 
 namespace {
@@ -66,7 +68,7 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
     require(H5Awrite(make(H5T_IEEE_F64LE), H5T_NATIVE_DOUBLE, number), what);
   } else {
     const Handle type = text_type();
-    const std::string text = without_nul(std::get<std::string>(value));
+    const std::string text = valid_utf8(without_nul(std::get<std::string>(value)));
     const char* characters = text.c_str();
     require(H5Awrite(make(type), type, &characters), what);
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "store/json_writer.hpp"
@@ -36,10 +37,29 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   return out;
 }
 
+/// Whether a column is left out of the table for people: `case` repeats problem and method, and what ends in
+/// _position or _velocity details a column without that ending (its essence is in `reason`).
+bool is_detail(const study::Column& column, const std::vector<study::Column>& columns) {
+  const auto has = [&](std::string_view name) {
+    return std::any_of(columns.begin(), columns.end(),
+                       [&](const study::Column& other) { return other.name == name; });
+  };
+  if (column.name == "case") return has("problem") && has("method") && !has("step");
+  for (std::string_view ending : {"_position", "_velocity"}) {
+    if (column.name.ends_with(ending) && has(column.name.substr(0, column.name.size() - ending.size())))
+      return true;
+  }
+  return false;
+}
+
 std::string words(const StudySummary& summary) {
   TextTable table;
-  std::size_t cases = 0;
+  std::size_t cases = 0, left_out = 0;
   for (const study::Column& column : summary.columns) {
+    if (is_detail(column, summary.columns)) {
+      ++left_out;
+      continue;
+    }
     std::vector<std::string> cells;
     const bool text = std::holds_alternative<std::vector<std::string>>(column.values);
     std::visit(
@@ -61,8 +81,10 @@ std::string words(const StudySummary& summary) {
                      text ? TextTable::Align::left : TextTable::Align::right, std::move(cells));
   }
   if (cases == 0) return "\nno finished cases\n";
-  return fmt::format("\n{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable\n", table.text(), cases,
-                     cases == 1 ? "" : "s", summary.verdicts[0], summary.verdicts[0] == 1 ? "s" : "",
+  const std::string more =
+      left_out > 0 ? fmt::format("({} more columns are in the file; --json shows them)\n", left_out) : "";
+  return fmt::format("\n{}{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable\n", table.text(), more,
+                     cases, cases == 1 ? "" : "s", summary.verdicts[0], summary.verdicts[0] == 1 ? "s" : "",
                      summary.verdicts[1], summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2]);
 }
 

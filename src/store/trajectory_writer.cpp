@@ -54,11 +54,11 @@ struct TrajectoryWriter::Datasets {
   explicit Datasets(const std::filesystem::path& path) : file(path) {}
 
   OutputFile file;
-  ExtendibleDataset time, position, velocity, kinetic, potential, elastic, gravitational, obstacle,
+  ExtendibleDataset time, position, velocity, kinetic, potential, total, elastic, gravitational, obstacle,
       linear_momentum, angular_momentum;
 
-  std::array<ExtendibleDataset*, 10> all() {
-    return {&time,    &position,      &velocity, &kinetic,         &potential,
+  std::array<ExtendibleDataset*, 11> all() {
+    return {&time,    &position,      &velocity, &kinetic,         &potential,       &total,
             &elastic, &gravitational, &obstacle, &linear_momentum, &angular_momentum};
   }
 };
@@ -87,6 +87,7 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const File
     make(d.velocity, "velocity", "m/s", {n, 3});
     make(d.kinetic, "kinetic_energy", "J", {});
     make(d.potential, "potential_energy", "J", {});
+    make(d.total, "total_energy", "J", {});
     make(d.elastic, "elastic_energy", "J", {});
     make(d.gravitational, "gravitational_energy", "J", {});
     make(d.obstacle, "obstacle_energy", "J", {});
@@ -125,6 +126,7 @@ void TrajectoryWriter::frame(double time, ConstVectorRef state) {
     d.velocity.append({state.data() + size, size});
     number(d.kinetic, quantities.kinetic);
     number(d.potential, potential);
+    number(d.total, quantities.kinetic + potential);
     number(d.elastic, quantities.elastic);
     number(d.gravitational, quantities.gravitational);
     number(d.obstacle, quantities.obstacle);

@@ -155,12 +155,15 @@ class ConvergenceCase {
 
   void refine(std::int64_t coarsest) {
     const double floor = error_floor(rounding_floor, reference_relative());
+    std::int64_t previous = 0;
     // Where the asymptotic range begins later, as many levels again may be spent on finding it.
     for (std::int64_t k = 0; k < 2 * settings_.levels; ++k) {
       if (k >= settings_.levels && is_measured()) break;
       const double exact = static_cast<double>(coarsest) * std::pow(settings_.ratio, static_cast<double>(k));
       const auto steps = static_cast<std::int64_t>(std::llround(exact));
       if (steps > settings_.max_steps) break;
+      if (steps == previous) continue;  // a ratio near 1 rounds to the same number of steps
+      previous = steps;
       std::optional<Level> level = run_level(steps);
       if (!level) continue;
       levels_.push_back(std::move(*level));

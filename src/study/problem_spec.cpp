@@ -31,13 +31,19 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
   if (section.has("scene")) {
     const std::filesystem::path path =
         std::filesystem::path(section.source_name()).parent_path() / section.string("scene");
-    entry.problem = problem_from_scene(path, section.positive_number("t_end"), &entry.scene_toml);
+    const double t_end = section.positive_number("t_end");
+    try {
+      entry.problem = problem_from_scene(path, t_end, &entry.scene_toml);
+    } catch (const InputError& error) {
+      section.fail("scene", error.what());
+    }
     entry.label = section.string_or("label", path.stem().string());
     entry.identity = entry.scene_toml;
   } else {
     const std::string name = section.string("name");
+    const ProblemParameters parameters = read_parameters(section);
     try {
-      entry.problem = catalog.problem(name, read_parameters(section));
+      entry.problem = catalog.problem(name, parameters);
     } catch (const InputError& error) {
       section.fail("name", error.what());
     }

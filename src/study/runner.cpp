@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 #include "core/error.hpp"
@@ -138,7 +139,14 @@ class Run {
 StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options) {
   Run run(plan, archive, options);
   std::vector<std::thread> threads;
-  for (int job = 1; job < options.jobs; ++job) threads.emplace_back([&run] { run.work(); });
+  const auto useful = static_cast<std::size_t>(std::max(options.jobs, 1));
+  for (std::size_t job = 1; job < std::min(useful, plan.cases.size()); ++job) {
+    try {
+      threads.emplace_back([&run] { run.work(); });
+    } catch (const std::system_error&) {
+      break;  // the machine has no more threads; those there are do all the work
+    }
+  }
   run.work();
   for (std::thread& thread : threads) thread.join();
   return run.result();

@@ -164,6 +164,15 @@ FieldGrid read_field(const CheckedTable& table) {
   return grid;
 }
 
+/// Throws InputError where the method cannot go through the interval with this step.
+void check_step(const MethodInfo& info, const Ivp& ivp, double step) {
+  if (info.is_multistep) {
+    count_whole_steps(info.name, ivp.t0, ivp.t1, step);
+  } else {
+    count_steps(ivp.t0, ivp.t1, step);
+  }
+}
+
 void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
   const std::vector<std::string> methods = read_methods(spec, catalog);
   const std::vector<double> steps =
@@ -208,8 +217,13 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       }
       if (steps.empty())
         spec.fail("steps", fmt::format("missing or empty, but method \"{}\" has a fixed step", call));
-      for (double step : steps) {
-        count_steps(problem->problem.ivp.t0, problem->problem.ivp.t1, step);
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        const double step = steps[k];
+        try {
+          check_step(integrator->info(), problem->problem.ivp, step);
+        } catch (const InputError& error) {
+          spec.fail("steps", {k}, fmt::format("{} (problem \"{}\")", error.what(), problem->label));
+        }
         add(FixedStep{.step = step}, fmt::format("-h{}", step), fmt::format("step = {}\n", step));
       }
     }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "problems/celestial.hpp"
+#include "problems/cloth.hpp"
 #include "problems/fermi_pasta_ulam.hpp"
 #include "problems/linear_chain.hpp"
 #include "problems/oscillators.hpp"
@@ -21,6 +22,7 @@ inline std::vector<ProblemEntry> every_problem() {
           damped_oscillator_entry(),
           driven_duffing_entry(),
           linear_chain_entry(),
+          cloth_entry(),
           spring_pendulum_entry(),
           kepler_entry(),
           henon_heiles_entry(),

@@ -71,9 +71,9 @@ TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {
     };
     const auto position = numbers("position"), velocity = numbers("velocity"), time = numbers("time"),
                kinetic = numbers("kinetic_energy"), potential = numbers("potential_energy"),
-               elastic = numbers("elastic_energy"), gravitational = numbers("gravitational_energy"),
-               obstacle = numbers("obstacle_energy"), linear = numbers("linear_momentum"),
-               angular = numbers("angular_momentum");
+               total = numbers("total_energy"), elastic = numbers("elastic_energy"),
+               gravitational = numbers("gravitational_energy"), obstacle = numbers("obstacle_energy"),
+               linear = numbers("linear_momentum"), angular = numbers("angular_momentum");
     const std::size_t half = 3 * static_cast<std::size_t>(n);
     std::size_t wrong = 0;
     for (std::size_t f = 0; f < static_cast<std::size_t>(frames); ++f) {
@@ -88,6 +88,7 @@ TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {
       wrong += time[f] != t || kinetic[f] != 1.0 + t || elastic[f] != expected_quantities.elastic;
       wrong += gravitational[f] != 3.0 || obstacle[f] != expected_quantities.obstacle;
       wrong += potential[f] != elastic[f] + gravitational[f] + obstacle[f];
+      wrong += total[f] != kinetic[f] + potential[f];
       wrong += linear[3 * f] != t || linear[3 * f + 1] != 5.0 || linear[3 * f + 2] != 6.0;
       wrong += angular[3 * f] != 7.0 || angular[3 * f + 1] != t || angular[3 * f + 2] != 8.0;
     }

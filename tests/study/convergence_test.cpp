@@ -162,16 +162,5 @@ TEST(Convergence, SaysNotApplicableForAMechanicalSchemeOnAFirstOrderEquation) {
   EXPECT_NE(result.cases.front().reason.find("M q''"), std::string::npos);
 }
 
-TEST(Convergence, MeasuresTheLectureNetworkForEverySchemeOfItsStudyFile) {
-  const CheckedTable spec =
-      CheckedTable::parse_file(FEDERWERK_SOURCE_DIR "/studies/convergence/mass_spring.toml");
-  const Plan plan = read_plan(spec, catalog::study_kinds(), catalog::BuiltinCatalog(), true);
-  MemoryArchive archive;
-  const StudyResult result = run_plan(plan, archive, {});
-  EXPECT_GE(result.cases.size(), 20u);
-  for (const CaseResult& entry : result.cases)
-    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
-}
-
 }  // namespace
 }  // namespace fw::study

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/process.hpp"
+#include "catalog/methods.hpp"
+#include "catalog/problems.hpp"
+#include "store/scratch_directory.hpp"
+
+namespace fw::app::test {
+namespace {
+
+using store::test::run_python;
+using store::test::ScratchDirectory;
+using ::testing::HasSubstr;
+
+/// Runs `federwerk` and a Python program that finds its output, parsed as JSON, in `x`; what it prints.
+std::string with_json(const std::vector<std::string>& arguments, const std::string& program) {
+  const ScratchDirectory scratch;
+  const ProcessResult result = run(scratch.path(), arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  store::test::write_bytes(scratch / "out.json", result.out);
+  return run_python("import json, sys\nx = json.load(open(sys.argv[1], encoding='utf-8'))\n" + program,
+                    {(scratch / "out.json").string()});
+}
+
+TEST(List, MethodsAsJsonHaveTheAgreedFields) {
+  const std::string names = with_json({"list", "methods", "--json"}, R"(
+types = dict(name=str, title=str, family=str, order=int, stages=int, explicit=bool, adaptive=bool,
+             symplectic=bool, a_stable=bool, l_stable=bool, reference=str)
+assert isinstance(x, list)
+for m in x:
+    for key, type_ in types.items():
+        assert type(m[key]) is type_, (m, key)
+        assert type_ is not str or m[key], (m, key)
+    assert m['a_stable'] or not m['l_stable'], m
+    assert not (m['explicit'] and m['a_stable']), m
+assert len({m['name'] for m in x}) == len(x)
+by = {m['name']: m for m in x}
+assert by['rk4']['order'] == 4 and by['rk4']['stages'] == 4 and by['rk4']['explicit']
+assert by['implicit_euler']['l_stable'] and not by['implicit_euler']['explicit']
+assert by['velocity_verlet']['symplectic'] and not by['rk4']['symplectic']
+assert by['sundials:cvode_bdf']['adaptive'] and not by['rk4']['adaptive']
+print(' '.join(by))
+)");
+  for (const catalog::MethodEntry& entry : catalog::methods()) EXPECT_THAT(names, HasSubstr(entry.info.name));
+}
+
+TEST(List, OraclesAreTheForeignMethods) {
+  with_json({"list", "oracles", "--json"}, "assert x and all(':' in m['name'] for m in x)\n");
+}
+
+TEST(List, EverythingElseHasNameTitleAndDescription) {
+  for (const std::string what : {"problems", "scenes", "studies"}) {
+    with_json({"list", what, "--json"},
+              "assert x and all(m['name'] and m['title'] and m['description'] for m in x)\n");
+  }
+}
+
+TEST(List, TablesNameWhatTheJsonNames) {
+  const ScratchDirectory scratch;
+  for (const std::string what : {"methods", "problems", "scenes", "studies", "oracles"}) {
+    const ProcessResult table = run(scratch.path(), {"list", what});
+    EXPECT_EQ(table.exit_code, 0);
+    const std::string names =
+        with_json({"list", what, "--json"}, "print('\\n'.join(m['name'] for m in x))\n");
+    std::istringstream lines(names);
+    for (std::string name; std::getline(lines, name);) EXPECT_THAT(table.out, HasSubstr(name));
+  }
+}
+
+TEST(Describe, KnowsEveryListedName) {
+  const ScratchDirectory scratch;
+  std::string names;
+  for (const std::string what : {"methods", "problems", "scenes", "studies"}) {
+    names += with_json({"list", what, "--json"}, "print('\\n'.join(m['name'] for m in x))\n");
+  }
+  std::istringstream lines(names);
+  for (std::string name; std::getline(lines, name);) {
+    const ProcessResult text = run(scratch.path(), {"describe", name});
+    EXPECT_EQ(text.exit_code, 0) << name << text.err;
+    EXPECT_THAT(text.out, ::testing::StartsWith(name));
+    with_json({"describe", name, "--json"},
+              "assert x['name'] == '" + name + "' and x['title'] and x['type'], x\n");
+  }
+}
+
+TEST(Describe, PrintsTheTableauOfARungeKuttaMethod) {
+  with_json({"describe", "rk4", "--json"},
+            "t = x['tableau']\n"
+            "assert t['b'] == [1/6, 1/3, 1/3, 1/6] and t['c'] == [0, .5, .5, 1] and t['A'][3] == [0, 0, 1, "
+            "0], t\n");
+}
+
+}  // namespace
+}  // namespace fw::app::test

@@ -1,0 +1,175 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include "app/process.hpp"
+#include "app/result_text.hpp"
+
+namespace fw::app::test {
+namespace {
+
+using store::test::ScratchDirectory;
+using store::test::write_bytes;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Words = std::vector<std::string>;
+
+/// Four cases of well under a second each; `settings` goes into [convergence].
+std::string convergence(const std::string& settings) {
+  return "kind = 'convergence'\ntitle = 'orders'\nmethods = ['heun', 'rk4']\n[convergence]\n" + settings +
+         "\n[[problem]]\nname = 'harmonic_oscillator'\nt_end = 4.7\n[[problem]]\nname = 'rotation'\nt_end = "
+         "2.3\n";
+}
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t number = 0;
+  for (auto at = text.find(word); at != text.npos; at = text.find(word, at + 1)) ++number;
+  return number;
+}
+
+class Run : public ::testing::Test {
+ protected:
+  ProcessResult run_study(const std::string& directory, const Words& options = {}) const {
+    Words all{"run", "s.toml", "-o", directory};
+    all.insert(all.end(), options.begin(), options.end());
+    return run(scratch_.path(), all);
+  }
+  std::string file(const std::string& name) const { return (scratch_ / name).string(); }
+
+  ScratchDirectory scratch_;
+};
+
+TEST_F(Run, ExitsWith0WhereEveryVerdictHolds) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  const ProcessResult result = run_study("r");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, HasSubstr("r/s.h5: 4 hold, 0 fail, 0 not applicable"));
+  inspect(R"(
+s = f['summary']
+assert f.attrs['status'] == 'complete' and f.attrs['kind'] == 'convergence'
+assert all(v == b'holds' for v in s['verdict'][()]) and len(s['reason']) == 4
+assert list(s['expected_order']) == [2, 4, 2, 4]
+assert np.abs(s['order'][()] - s['expected_order'][()]).max() < 0.1
+assert len(f['cases']) == 4
+)",
+          {file("r/s.h5")});
+  EXPECT_THAT(run(scratch_.path(), {"show", "r/s.h5"}).out,
+              AllOf(HasSubstr("holds"), HasSubstr("heun"), Not(HasSubstr("fails"))));
+}
+
+TEST_F(Run, ExitsWith1WhereAVerdictFails) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6\ntolerance = 1e-9"));
+  const ProcessResult result = run_study("r");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("0 hold, 4 fail"));
+  inspect(
+      "assert f.attrs['status'] == 'complete'\nassert all(v == b'fails' for v in f['summary/verdict'][()])\n",
+      {file("r/s.h5")});
+  // Kept verdicts count as well.
+  EXPECT_EQ(run_study("r").exit_code, 1);
+}
+
+TEST_F(Run, KeepsFinishedCasesUnlessForced) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  EXPECT_EQ(count(run_study("r").out, "(kept)"), 0U);
+  std::filesystem::copy_file(scratch_ / "r" / "s.h5", scratch_ / "first.h5");
+  const ProcessResult again = run_study("r");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(count(again.out, "(kept)"), 4U) << again.out;
+  EXPECT_THAT(again.out, HasSubstr("4 kept from an earlier run"));
+  inspect(
+      "same(f, g)\nfor n in f['cases']: assert np.array_equal(f['cases'][n]['seconds'], "
+      "g['cases'][n]['seconds'])\n",
+      {file("r/s.h5"), file("first.h5")});
+  const ProcessResult forced = run_study("r", {"--force"});
+  EXPECT_EQ(forced.exit_code, 0);
+  EXPECT_EQ(count(forced.out, "(kept)"), 0U) << forced.out;
+  inspect("same(f, g)\n", {file("r/s.h5"), file("first.h5")});
+}
+
+TEST_F(Run, RunsOnlyTheCasesThatHaveChanged) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  std::string text = convergence("levels = 6");
+  text.replace(text.find("t_end = 2.3"), 11, "t_end = 2.4");
+  write_bytes(scratch_ / "s.toml", text);
+  EXPECT_EQ(count(run_study("r").out, "(kept)"), 2U);
+  write_bytes(scratch_ / "s.toml", convergence("levels = 7"));
+  EXPECT_EQ(count(run_study("r").out, "(kept)"), 0U);
+}
+
+TEST_F(Run, GivesTheSameNumbersWithAnyNumberOfJobs) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  ASSERT_EQ(run_study("one", {"--jobs", "1"}).exit_code, 0);
+  ASSERT_EQ(run_study("two", {"--jobs", "2"}).exit_code, 0);
+  ASSERT_EQ(run_study("many", {"--jobs", "1000000000"}).exit_code, 0);
+  inspect("same(f, g)\n", {file("one/s.h5"), file("two/s.h5")});
+  inspect("same(f, g)\n", {file("one/s.h5"), file("many/s.h5")});
+}
+
+TEST_F(Run, QuickAppliesTheStudysOwnSection) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 9") + "[quick]\nlevels = 6\n");
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  ASSERT_EQ(run_study("q", {"--quick"}).exit_code, 0);
+  inspect(
+      "n = 'harmonic_oscillator-heun'\nassert len(f['cases'][n]['step']) == 9 and len(g['cases'][n]['step']) "
+      "== 6\n",
+      {file("r/s.h5"), file("q/s.h5")});
+}
+
+TEST_F(Run, GoesOnWhereItWasInterrupted) {
+  // One case of a moment, one of minutes, which the interrupt stops.
+  const std::string head = "kind = 'simulate'\ntitle = 'T'\nmethods = ['rk4']\nframes = 11\nsteps = [1e-2, ";
+  const std::string problem = "]\n[[problem]]\nname = 'harmonic_oscillator'\nt_end = 100\n";
+  write_bytes(scratch_ / "s.toml", head + "1e-9" + problem);
+  Process process(scratch_.path(), {"run", "s.toml", "-o", "r"});
+  ::usleep(1'000'000);
+  process.send(SIGINT);
+  const ProcessResult stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.signal;
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted; finished cases are kept"));
+  inspect("assert f.attrs['status'] == 'incomplete' and len(f['cases']) == 1\n", {file("r/s.h5")});
+
+  write_bytes(scratch_ / "s.toml", head + "1e-3" + problem);
+  const ProcessResult again = run_study("r");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(count(again.out, "(kept)"), 1U) << again.out;
+  inspect("assert f.attrs['status'] == 'complete' and len(f['cases']) == 2\n", {file("r/s.h5")});
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch_ / "r"), {}), 1);
+}
+
+TEST_F(Run, LosesNoFinishedCaseWhenKilled) {
+  write_bytes(scratch_ / "s.toml",
+              "kind = 'simulate'\ntitle = 'T'\nmethods = ['rk4']\nframes = 11\nsteps = [1e-2, 1e-9]\n"
+              "[[problem]]\nname = 'harmonic_oscillator'\nt_end = 100\n");
+  Process process(scratch_.path(), {"run", "s.toml", "-o", "r"});
+  ::usleep(1'000'000);
+  process.send(SIGKILL);
+  EXPECT_EQ(process.wait().signal, SIGKILL);
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "r" / "s.h5"));
+  std::string text = store::test::read_bytes(scratch_ / "s.toml");
+  text.replace(text.find("1e-9"), 4, "1e-3");
+  write_bytes(scratch_ / "s.toml", text);
+  const ProcessResult again = run_study("r");
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(count(again.out, "(kept)"), 1U) << again.out;
+}
+
+TEST_F(Run, RunsStudiesOfScenesWhosePathIsRelativeToTheStudy) {
+  std::filesystem::create_directory(scratch_ / "d");
+  write_bytes(scratch_ / "d" / "scene.toml",
+              "[particles]\nposition = [[0,0,0], [1.2,0,0]]\nmass = 1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0,1]]\nstiffness = 4\nrest_length = 1\n");
+  write_bytes(scratch_ / "d" / "s.toml",
+              "kind = 'simulate'\ntitle = 'T'\nmethods = ['velocity_verlet']\nsteps = [0.01]\n"
+              "[[problem]]\nscene = 'scene.toml'\nt_end = 1\n");
+  const ProcessResult result = run(scratch_.path(), {"run", "d/s.toml", "-o", "r"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(scratch_ / "r" / "s.h5"));
+}
+
+}  // namespace
+}  // namespace fw::app::test

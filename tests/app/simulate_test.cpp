@@ -1,0 +1,264 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include "app/process.hpp"
+#include "app/result_text.hpp"
+#include "catalog/methods.hpp"
+
+namespace fw::app::test {
+namespace {
+
+using store::test::ScratchDirectory;
+using store::test::write_bytes;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Words = std::vector<std::string>;
+
+/// A fixed point, a damped spring and a moving point in a field of gravity.
+const std::string pendulum = R"(title = "pendulum"
+[world]
+gravity = [0, 0, -9.81]
+[particles]
+position = [[0.1, 0.2, 0.3], [1, 0, 0], [1.5, 0.5, 0]]
+velocity = [[0, 0, 0], [0, 1, 0], [0, 0, 1]]
+mass = [1, 2, 3]
+fixed = [0]
+[springs]
+between = [[0, 1], [1, 2]]
+stiffness = [100, 80]
+damping = 0.1
+)";
+
+class Simulate : public ::testing::Test {
+ protected:
+  void SetUp() override { write_bytes(scratch_ / "s.toml", pendulum); }
+
+  std::string file(const std::string& name) const { return (scratch_ / name).string(); }
+
+  /// Simulates with these further arguments into `output`; the result of the process.
+  ProcessResult simulate(const std::string& output, const Words& arguments) const {
+    Words all{"simulate", "s.toml", "-o", output};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run(scratch_.path(), all);
+  }
+
+  ScratchDirectory scratch_;
+};
+
+TEST_F(Simulate, StoresTheFramesNearestToAnEqualSpacing) {
+  const ProcessResult result =
+      simulate("a.h5", {"--method", "rk4", "--step", "0.01", "--t-end", "1", "--frames", "8"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, HasSubstr("a.h5: 8 frames"));
+  EXPECT_THAT(scratch_.names(), ElementsAre("a.h5", "s.toml"));
+  inspect(R"(
+t = f['trajectory/time'][()]
+assert len(t) == 8 and t[0] == 0 and t[-1] == 1
+k = np.rint(np.linspace(0, 1, 8) / 0.01)
+assert np.array_equal(t[:-1], k[:-1] * 0.01), t
+assert np.array_equal(f['trajectory/position'][0], [[0.1, 0.2, 0.3], [1, 0, 0], [1.5, 0.5, 0]])
+assert np.array_equal(f['trajectory/velocity'][0], [[0, 0, 0], [0, 1, 0], [0, 0, 1]])
+assert f.attrs['status'] == 'complete' and f.attrs['solver_status'] == 'success'
+assert f.attrs['title'] == 'pendulum' and 'simulate s.toml' in f.attrs['command_line']
+assert f['counters/accepted_steps'][()] == 100 and f['counters/rhs_evaluations'][()] == 400
+)",
+          {file("a.h5")});
+}
+
+TEST_F(Simulate, Stores101FramesUnlessAskedOtherwise) {
+  EXPECT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.001", "--t-end", "1"}).exit_code, 0);
+  inspect("assert f['trajectory/time'].shape == (101,)\n", {file("a.h5")});
+}
+
+TEST_F(Simulate, StoresEveryStateOnceWhereThereAreFewerStepsThanFrames) {
+  EXPECT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.25", "--t-end", "1"}).exit_code, 0);
+  inspect("assert list(f['trajectory/time']) == [0, .25, .5, .75, 1]\n", {file("a.h5")});
+}
+
+TEST_F(Simulate, TellsOfAShorterLastStepAndTakesIt) {
+  const ProcessResult result = simulate("a.h5", {"--method", "rk4", "--step", "0.3", "--t-end", "1"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("the last step is 0.1 s"));
+  inspect(
+      "t = f['trajectory/time'][()]\nassert np.allclose(t, [0, .3, .6, .9, 1], atol=1e-15) and t[-1] == 1\n",
+      {file("a.h5")});
+}
+
+TEST_F(Simulate, TakesASingleStepShorterThanAsked) {
+  const ProcessResult result = simulate("a.h5", {"--method", "rk4", "--step", "3", "--t-end", "0.01"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("the last step is 0.01 s"));
+  ASSERT_EQ(simulate("b.h5", {"--method", "rk4", "--step", "0.01", "--t-end", "0.01"}).exit_code, 0);
+  inspect("assert np.array_equal(f['trajectory/position'], g['trajectory/position'])\n",
+          {file("a.h5"), file("b.h5")});
+}
+
+TEST_F(Simulate, InterpolatesEquallySpacedFramesOfAnAdaptiveMethod) {
+  const Words adaptive = {"--method", "sundials:cvode_bdf", "--rtol", "1e-9", "--atol", "1e-12", "--t-end",
+                          "1"};
+  Words many = adaptive;
+  many.insert(many.end(), {"--frames", "41"});
+  ASSERT_EQ(simulate("a.h5", many).exit_code, 0);
+  ASSERT_EQ(
+      simulate("b.h5", {"--method", "rk4", "--step", "0.001", "--t-end", "1", "--frames", "41"}).exit_code,
+      0);
+  inspect(R"(
+t = f['trajectory/time'][()]
+assert len(t) == 41 and t[0] == 0 and t[-1] == 1
+assert np.allclose(t, np.linspace(0, 1, 41), rtol=0, atol=1e-15)
+d = np.abs(f['trajectory/position'][()] - g['trajectory/position'][()])
+assert d.max() < 1e-6, d.max()
+)",
+          {file("a.h5"), file("b.h5")});
+}
+
+TEST_F(Simulate, NamesTheFileAfterSceneAndMethodByDefault) {
+  const ProcessResult result = run(scratch_.path(), {"simulate", "s.toml", "--method", "sundials:cvode_bdf",
+                                                     "--rtol", "1e-6", "--atol", "1e-6", "--t-end", "1"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(scratch_.names(), ElementsAre("s-sundials_cvode_bdf.h5", "s.toml"));
+}
+
+TEST_F(Simulate, WritesXdmfOnRequest) {
+  ASSERT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.01", "--t-end", "1", "--xdmf"}).exit_code, 0);
+  EXPECT_THAT(scratch_.names(), ElementsAre("a.h5", "a.xdmf", "s.toml"));
+  EXPECT_THAT(store::test::read_bytes(scratch_ / "a.xdmf"), HasSubstr("a.h5:"));
+}
+
+TEST_F(Simulate, GivesTheSameResultBitForBitWhenRunTwice) {
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    Words arguments = {"--method", entry.info.name, "--t-end", "0.5"};
+    if (entry.info.is_adaptive) {
+      arguments.insert(arguments.end(), {"--rtol", "1e-6", "--atol", "1e-8"});
+    } else {
+      arguments.insert(arguments.end(), {"--step", "0.005"});
+    }
+    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.info.name;
+    ASSERT_EQ(simulate("b.h5", arguments).exit_code, 0) << entry.info.name;
+    inspect("assert same(f, g) > 15\n", {file("a.h5"), file("b.h5")});
+  }
+}
+
+TEST_F(Simulate, AnotherStepIsNotTheSameResult) {
+  ASSERT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.005", "--t-end", "0.5"}).exit_code, 0);
+  ASSERT_EQ(simulate("b.h5", {"--method", "rk4", "--step", "0.0025", "--t-end", "0.5"}).exit_code, 0);
+  inspect(
+      "try: same(f, g)\n"
+      "except AssertionError: sys.exit(0)\n"
+      "sys.exit('the comparison sees no difference')\n",
+      {file("a.h5"), file("b.h5")});
+}
+
+TEST_F(Simulate, LeavesFixedPointsWhereTheyAreBitForBit) {
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    Words arguments = {"--method", entry.info.name, "--t-end", "1"};
+    if (entry.info.is_adaptive) {
+      arguments.insert(arguments.end(), {"--rtol", "1e-4", "--atol", "1e-6"});
+    } else {
+      arguments.insert(arguments.end(), {"--step", "0.005"});
+    }
+    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.info.name;
+    inspect(R"(
+x, v = f['trajectory/position'][()], f['trajectory/velocity'][()]
+assert list(f['system/fixed']) == [0]
+assert x[:, 0].tobytes() == np.tile([0.1, 0.2, 0.3], (len(x), 1)).tobytes(), x[:, 0] - x[0, 0]
+assert not v[:, 0].any()
+assert np.abs(x[-1, 1] - x[0, 1]).max() > 1e-2
+)",
+            {file("a.h5")});
+  }
+}
+
+TEST_F(Simulate, DrawsNoProgressBarWhereStandardErrorIsNoTerminal) {
+  const ProcessResult result =
+      simulate("a.h5", {"--method", "rk4", "--step", "1e-6", "--t-end", "1", "--frames", "2"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_GT(result.seconds, 0.15) << "too short for a bar to be due";
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, Not(HasSubstr("\r")));
+}
+
+TEST_F(Simulate, DrawsAProgressBarOnATerminalAndRemovesIt) {
+  int terminal = -1, end = -1;
+  ASSERT_EQ(::openpty(&terminal, &end, nullptr, nullptr, nullptr), 0);
+  const ProcessResult result = run(scratch_.path(),
+                                   {"simulate", "s.toml", "-o", "a.h5", "--method", "rk4", "--step", "1e-6",
+                                    "--t-end", "2", "--frames", "2"},
+                                   [&] { return ::dup2(end, STDERR_FILENO) >= 0; });
+  ::close(end);
+  std::string drawn;
+  char buffer[4096];
+  for (ssize_t size; (size = ::read(terminal, buffer, sizeof buffer)) > 0;) {
+    drawn.append(buffer, static_cast<std::size_t>(size));
+  }
+  ::close(terminal);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_GT(result.seconds, 0.15) << "too short for a bar to be due";
+  EXPECT_THAT(drawn, AllOf(HasSubstr("[#"), HasSubstr("steps/s"), HasSubstr(" left  t = ")));
+  EXPECT_TRUE(drawn.ends_with("\r\033[K")) << drawn;
+}
+
+TEST_F(Simulate, TellsAFailureToReadFromAnEmptyScene) {
+  const ProcessResult result = run(scratch_.path(), {"simulate", "/proc/self/mem", "-o", "a.h5", "--method",
+                                                     "rk4", "--step", "1", "--t-end", "1"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("/proc/self/mem: reading failed: Input/output error"));
+  EXPECT_THAT(scratch_.names(), ElementsAre("s.toml"));
+}
+
+TEST_F(Simulate, TakesNamesThatAreNotUtf8) {
+  write_bytes(scratch_ / "\xff it's.toml", pendulum);
+  const ProcessResult result = run(scratch_.path(), {"simulate", "\xff it's.toml", "--method", "rk4",
+                                                     "--step", "0.1", "--t-end", "1", "-o", "\xff.h5"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::filesystem::rename(scratch_ / "\xff.h5", scratch_ / "a.h5");
+  inspect("assert \"\\ufffd it'\\\\''s.toml\" in f.attrs['command_line'], f.attrs['command_line']\n",
+          {file("a.h5")});
+}
+
+TEST_F(Simulate, KeepsWhatIsFinishedWhenInterrupted) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Process process(scratch_.path(), {"simulate", "s.toml", "-o", "a.h5", "--method", "rk4", "--step", "1e-6",
+                                      "--t-end", "1e4", "--frames", "100000001"});
+    ::usleep(500'000);
+    process.send(signal);
+    const ProcessResult result = process.wait();
+    EXPECT_EQ(result.exit_code, 3) << result.signal;
+    EXPECT_THAT(result.err, HasSubstr("interrupted by the user at t = "));
+    EXPECT_THAT(scratch_.names(), ElementsAre("a.h5", "s.toml"));
+    inspect(
+        "assert f.attrs['status'] == 'incomplete' and f.attrs['solver_status'].startswith('interrupted')\n"
+        "t = f['trajectory/time'][()]\n"
+        "assert len(t) > 2 and (np.diff(t) > 0).all() and len(f['trajectory/position']) == len(t)\n",
+        {file("a.h5")});
+    EXPECT_EQ(run(scratch_.path(), {"show", "a.h5"}).exit_code, 0);
+  }
+}
+
+TEST_F(Simulate, KeepsTheStatesBeforeABlowUp) {
+  write_bytes(scratch_ / "s.toml",
+              "[particles]\nposition = [[0,0,0], [1.1,0,0]]\nmass = 1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0,1]]\nstiffness = 1e6\nrest_length = 1\n");
+  const ProcessResult result =
+      simulate("a.h5", {"--method", "explicit_euler", "--step", "0.1", "--t-end", "100"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, ::testing::AnyOf(HasSubstr("non_finite"), HasSubstr("blow_up")));
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_THAT(scratch_.names(), ElementsAre("a.h5", "s.toml"));
+  inspect(R"(
+assert f.attrs['status'] == 'incomplete'
+assert f.attrs['solver_status'].startswith(('non_finite', 'blow_up')), f.attrs['solver_status']
+x = f['trajectory/position'][()]
+assert 1 < len(x) < 101 and np.isfinite(x).all() and f['trajectory/time'][-1] < 100
+)",
+          {file("a.h5")});
+}
+
+}  // namespace
+}  // namespace fw::app::test
