@@ -56,7 +56,8 @@ std::string describe_method(const catalog::MethodEntry& entry) {
                : info.is_multistep ? "fixed, the interval has to be a whole number of steps"
                                    : "fixed (--step)");
   line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");
-  line("linear stability", info.is_l_stable   ? "A-stable, L-stable"
+  line("linear stability", info.order == 0    ? "depends on the order in use"
+                           : info.is_l_stable ? "A-stable, L-stable"
                            : info.is_a_stable ? "A-stable"
                                               : "conditional");
   line("works on", info.needs_second_order ? "M q'' = f(t, q, q')" : "y' = f(t, y)");

@@ -58,6 +58,9 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
           fmt::format("{}: another study of this run also writes {}; expected different file names", path,
                       study.output.string()));
     }
+    for (const std::string& warning : study.plan.warnings) {
+      fmt::print(stderr, "federwerk: warning: {}\n", warning);
+    }
     studies.push_back(std::move(study));
   }
   return studies;

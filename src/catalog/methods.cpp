@@ -77,6 +77,17 @@ MethodEntry linearised_implicit_euler() {
           }};
 }
 
+MethodEntry cvode_bdf() {
+  const oracles::CvodeOptions defaults;
+  return {oracles::make_cvode_bdf()->info(),
+          {{"tolerance_factor", fmt::format("{}", defaults.tolerance_factor),
+            "CVODE's own tolerances as a fraction of those given"}},
+          [defaults](const MethodOptions& options) {
+            return oracles::make_cvode_bdf({.tolerance_factor = positive_number(options, "tolerance_factor",
+                                                                                defaults.tolerance_factor)});
+          }};
+}
+
 std::vector<MethodEntry> make_list() {
   std::vector<MethodEntry> list;
   for (const integrators::ButcherTableau& tableau : integrators::tableaus()) {
@@ -88,7 +99,7 @@ std::vector<MethodEntry> make_list() {
   list.push_back(plain(integrators::make_velocity_verlet));
   list.push_back(plain(integrators::make_implicit_euler));
   list.push_back(linearised_implicit_euler());
-  list.push_back(plain(oracles::make_cvode_bdf));
+  list.push_back(cvode_bdf());
   return list;
 }
 

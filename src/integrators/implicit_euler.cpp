@@ -74,7 +74,7 @@ class SecondOrderStepper final : public Stepper, private linalg::NewtonProblem {
     time_ = t + h;
     step_ = h;
     auto v = y.tail(n);
-    const Status status = newton_.solve(*this, v, start_velocity_.lpNorm<Eigen::Infinity>(), work_);
+    Status status = newton_.solve(*this, v, start_velocity_.lpNorm<Eigen::Infinity>(), work_);
     if (!status.ok()) return status;
     // v' = v + h M⁻¹f' with the last force, so that momentum changes by forces only, not by Newton's rest.
     v = start_velocity_ + step_ * force_.cwiseQuotient(system_.mass());

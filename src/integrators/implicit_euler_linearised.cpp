@@ -64,18 +64,19 @@ class LinearisedStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptions& options) {
-  MethodInfo info{.name = "implicit_euler_linearised",
-                  .title = "Linearised implicit Euler (one solve)",
-                  .family = "implicit",
-                  .order = 1,
-                  .order_with_velocity_forces = 1,
-                  .stages = 1,
-                  .is_explicit = false,
-                  .is_a_stable = true,
-                  .is_l_stable = true,
-                  .needs_second_order = true,
-                  .formula = "(M - hD - h²K) (v' - v) = h (f + h K v);  x' = x + h v'",
-                  .reference = "[Zachmann 2011, S25-S31; Baraff, Witkin 1998]"};
+  MethodInfo info{
+      .name = "implicit_euler_linearised",
+      .title = "Linearised implicit Euler (one solve)",
+      .family = "implicit",
+      .order = 1,
+      .order_with_velocity_forces = 1,
+      .stages = 1,
+      .is_explicit = false,
+      .is_a_stable = true,
+      .is_l_stable = true,
+      .needs_second_order = true,
+      .formula = "(M - hD - h²K) (v' - v) = h (f + h K v);  x' = x + h v';  f, K, D at (t+h, x, v)",
+      .reference = "[Zachmann 2011, S25-S31; Baraff, Witkin 1998]"};
   return std::make_unique<FixedStepIntegrator>(
       std::move(info), [options](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
         return std::make_unique<LinearisedStepper>(options, ivp, work);

@@ -35,7 +35,7 @@ void add_springs(MassSpringModel& model, int count, int di, int dj, double stiff
 }  // namespace
 
 ProblemEntry cloth_entry() {
-  return {"cloth",
+  return {"small_cloth",
           {{"count", 4.0}, {"mass", 0.05}, {"stiffness", 30.0}, {"damping", 0.02}, {"gravity", 9.81}},
           cloth};
 }
@@ -68,7 +68,7 @@ Problem cloth(const ProblemParameters& given) {
   }
 
   Problem problem;
-  problem.name = "cloth";
+  problem.name = "small_cloth";
   problem.title = "Small hanging cloth";
   problem.description =
       "count x count points on a square of 1 m with structural springs k, shear springs k/4 and bend springs "

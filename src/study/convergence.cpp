@@ -21,9 +21,9 @@ namespace {
 
 /// The keys of [convergence].
 struct Settings {
-  double ratio = 1.5;         ///< of successive steps
-  std::int64_t levels = 9;    ///< steps per case; up to twice as many if these do not suffice for a fit
-  double start_error = 0.02;  ///< relative error at the coarsest step, found by halving
+  double ratio = 1.5;          ///< of successive steps
+  std::int64_t levels = 9;     ///< steps per case; up to twice as many if these do not suffice for a fit
+  double start_error = 0.003;  ///< relative error at the coarsest step, found by halving
   std::int64_t max_steps = 4'000'000;  ///< no run takes more steps
   double tolerance = 0.1;              ///< |observed − expected order| that still holds
   double minimum_correlation = 0.999;
@@ -226,7 +226,12 @@ class ConvergenceCase {
     } else {
       check("state", fit_);
     }
-    // What cannot be measured proves nothing, but a claim that cannot be shown does not hold.
+    if (!measured && reference_relative() / reference_margin > rounding_floor) {
+      return conclude(Verdict::not_applicable,
+                      fmt::format("the reference is known to {:.2g} only; {}",
+                                  reference_.states.front().largest_error(), reason));
+    }
+    // A claim that cannot be shown does not hold.
     return conclude(holds && measured ? Verdict::holds : Verdict::fails, reason);
   }
 
@@ -352,7 +357,7 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
 void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
   const Settings settings = read_settings(spec, quick);
   const std::vector<std::string> methods = read_methods(spec, catalog);
-  for (StudyProblem& entry : read_problems(spec, catalog)) {
+  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
     const auto problem = std::make_shared<const SharedProblem>(std::move(entry));
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];

@@ -12,6 +12,7 @@ namespace fw::study {
 Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
                bool quick) {
   std::vector<std::string> names;
+  names.reserve(kinds.size());
   for (const StudyKind& kind : kinds) names.push_back(kind.name);
   Plan plan;
   plan.kind = spec.choice("kind", names);

@@ -41,7 +41,8 @@ struct Plan {
   std::string title;
   std::string spec;  ///< the resolved input as TOML text
   std::int64_t seed = 0;
-  std::vector<PlannedCase> cases;
+  std::vector<std::string> warnings{};  ///< what is legal but has no effect, one sentence each
+  std::vector<PlannedCase> cases{};
 };
 
 /// One kind of study: reads its specification into a plan. `quick` applies the study's own [quick] section.

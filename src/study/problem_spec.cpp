@@ -22,7 +22,30 @@ ProblemParameters read_parameters(const CheckedTable& section) {
   return parameters;
 }
 
-StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
+std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpringSystem>& system) {
+  const Index n = system->degrees_of_freedom();
+  return {{"energy", "J",
+           [system, n](double, ConstVectorRef y) { return system->energies(y.head(n), y.tail(n)).total(); }}};
+}
+
+/// The scene as a problem on [0, t_end].
+Problem problem_from_scene(scene::Scene scene, const std::string& name, double t_end) {
+  const bool has_kinks =
+      scene.model.springs.law == mechanics::SpringLaw::tension_only || !scene.model.obstacles.empty();
+  Problem problem;
+  problem.name = name;
+  problem.title = scene.title;
+  problem.is_smooth = !has_kinks;
+  problem.ivp.y0 = initial_state(scene);
+  problem.ivp.t1 = t_end;
+  auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
+  if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
+  problem.ivp.system = std::move(system);
+  return problem;
+}
+
+StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
+                          std::vector<std::string>& warnings) {
   StudyProblem entry;
   if (section.has("scene") == section.has("name")) {
     throw InputError(fmt::format("{}: found {} of \"name\" and \"scene\", expected exactly one",
@@ -33,7 +56,10 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
         std::filesystem::path(section.source_name()).parent_path() / section.string("scene");
     const double t_end = section.positive_number("t_end");
     try {
-      entry.problem = problem_from_scene(path, t_end, &entry.scene_toml);
+      scene::Scene scene = scene::read_scene(path);
+      warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
+      entry.scene_toml = scene.resolved_toml;
+      entry.problem = problem_from_scene(std::move(scene), path.stem().string(), t_end);
     } catch (const InputError& error) {
       section.fail("scene", error.what());
     }
@@ -59,35 +85,13 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog) {
   return entry;
 }
 
-std::vector<Invariant> energy_of(std::shared_ptr<const mechanics::MassSpringSystem> system) {
-  const Index n = system->degrees_of_freedom();
-  return {{"energy", "J",
-           [system, n](double, ConstVectorRef y) { return system->energies(y.head(n), y.tail(n)).total(); }}};
-}
-
 }  // namespace
 
-Problem problem_from_scene(const std::filesystem::path& path, double t_end, std::string* resolved_toml) {
-  scene::Scene scene = scene::read_scene(path);
-  if (resolved_toml != nullptr) *resolved_toml = scene.resolved_toml;
-  const bool has_kinks =
-      scene.model.springs.law == mechanics::SpringLaw::tension_only || !scene.model.obstacles.empty();
-  Problem problem;
-  problem.name = path.stem().string();
-  problem.title = scene.title;
-  problem.is_smooth = !has_kinks;
-  problem.ivp.y0 = initial_state(scene);
-  problem.ivp.t1 = t_end;
-  auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
-  if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
-  problem.ivp.system = std::move(system);
-  return problem;
-}
-
-std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog) {
+std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog,
+                                        std::vector<std::string>& warnings) {
   std::vector<StudyProblem> problems;
   for (const CheckedTable& section : spec.tables("problem"))
-    problems.push_back(read_problem(section, catalog));
+    problems.push_back(read_problem(section, catalog, warnings));
   if (problems.empty()) {
     throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
   }
@@ -95,7 +99,7 @@ std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog&
 }
 
 std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog) {
-  const std::vector<std::string> methods = spec.strings("methods");
+  std::vector<std::string> methods = spec.strings("methods");
   if (methods.empty()) spec.fail("methods", "found an empty list, expected at least one method");
   for (std::size_t i = 0; i < methods.size(); ++i) {
     try {

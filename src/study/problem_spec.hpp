@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,11 @@ struct StudyProblem {
 
 /// Reads the [[problem]] sections: `name` (with `parameters = { … }`) or `scene` (a path relative to the
 /// study file, then `t_end` is required), `t_end`, `label`. Throws InputError.
-std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog);
+/// `warnings` gains what a scene says without effect.
+std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog,
+                                        std::vector<std::string>& warnings);
 
 /// Checks the calls of `methods` and returns them. Throws InputError that names the entry.
 std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog);
-
-/// The scene as a problem on [0, t_end] with energy-like invariants where the scene has them.
-Problem problem_from_scene(const std::filesystem::path& path, double t_end, std::string* resolved_toml);
 
 }  // namespace fw::study

@@ -187,7 +187,7 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
   const auto frames = static_cast<std::uint64_t>(quick ? quick_frames : all_frames);
 
   std::shared_ptr<const StudyProblem> first;
-  for (StudyProblem& entry : read_problems(spec, catalog)) {
+  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
     const auto problem = std::make_shared<const StudyProblem>(std::move(entry));
     if (!first) first = problem;
     for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -202,7 +202,7 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       }
       const auto add = [&](const StepControl& control, const std::string& suffix,
                            const std::string& identity) {
-        plan.cases.push_back({.id = group_name(problem->label + "-" + call + suffix),
+        plan.cases.push_back({.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
                               .identity = fmt::format("simulate\n{}method = {}\nframes = {}\n{}",
                                                       problem->identity, call, frames, identity),
                               .run = [problem, call, integrator, control, frames](const RunContext& context) {

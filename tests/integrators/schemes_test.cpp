@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -49,7 +50,10 @@ TEST(Rk4, IntegratesCubicsExactly) {
   ivp.system = std::make_shared<FunctorSystem<CubicSlope>>(1, CubicSlope{});
   ivp.y0 = Vector{{0.25}};
   ivp.t1 = 1.0;
-  const Solution solution = run(*make_explicit_runge_kutta(tableaus().back()), ivp, 1.0);
+  const auto is_rk4 = [](const ButcherTableau& tableau) { return tableau.name == "rk4"; };
+  const auto rk4 = std::find_if(tableaus().begin(), tableaus().end(), is_rk4);
+  ASSERT_NE(rk4, tableaus().end());
+  const Solution solution = run(*make_explicit_runge_kutta(*rk4), ivp, 1.0);
   EXPECT_NEAR(solution.state[0], 1.25, 1e-15);
   EXPECT_EQ(solution.work.rhs_evaluations, 4u);
 }

@@ -13,6 +13,8 @@ namespace {
 
 using namespace detail;
 
+/// Relative tolerances below this drown in rounding.
+constexpr double smallest_relative_tolerance = 1e-13;
 constexpr int max_steps_without_progress = 20;
 
 /// What CVODE's callbacks need; one per run.
@@ -79,6 +81,8 @@ Status status_of_flag(int flag, const Run& run, double t) {
 
 class CvodeBdf final : public Integrator {
  public:
+  explicit CvodeBdf(const CvodeOptions& options) : options_(options) {}
+
   const MethodInfo& info() const override { return info_; }
 
  private:
@@ -114,7 +118,10 @@ class CvodeBdf final : public Integrator {
     require(CVodeSetErrHandlerFn(memory, keep_message, &run), "CVodeSetErrHandlerFn");
     require(CVodeInit(memory, evaluate_rhs, ivp.t0, y.get()), "CVodeInit");
     require(CVodeSetUserData(memory, &run), "CVodeSetUserData");
-    require(CVodeSStolerances(memory, tolerances->relative_tolerance, tolerances->absolute_tolerance),
+    const double relative = std::min(
+        tolerances->relative_tolerance,
+        std::max(tolerances->relative_tolerance * options_.tolerance_factor, smallest_relative_tolerance));
+    require(CVodeSStolerances(memory, relative, tolerances->absolute_tolerance * options_.tolerance_factor),
             "CVodeSStolerances");
     require(CVodeSetLinearSolver(memory, linear_solver.get(), matrix.get()), "CVodeSetLinearSolver");
     require(CVodeSetJacFn(memory, evaluate_jacobian), "CVodeSetJacFn");
@@ -177,6 +184,7 @@ class CvodeBdf final : public Integrator {
     work.newton_iterations = work.linear_solves = static_cast<std::uint64_t>(newton);
   }
 
+  CvodeOptions options_;
   MethodInfo info_{
       .name = "sundials:cvode_bdf",
       .title = "CVODE, variable-order BDF with Newton and KLU",
@@ -193,8 +201,8 @@ class CvodeBdf final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_cvode_bdf() {
-  return std::make_unique<CvodeBdf>();
+std::unique_ptr<Integrator> make_cvode_bdf(const CvodeOptions& options) {
+  return std::make_unique<CvodeBdf>(options);
 }
 
 }  // namespace fw::oracles
