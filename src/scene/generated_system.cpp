@@ -46,8 +46,9 @@ Kind make_kind(const std::string& name) {
 }
 
 Kind read_kind(const CheckedTable& generate) {
-  std::vector<std::string> names{"mesh"};
+  std::vector<std::string> names;
   for (const GeneratorInfo& generator : generators()) names.push_back(generator.name);
+  names.emplace_back("mesh");
   const std::string name = generate.choice("kind", names);
   if (name == "mesh") {
     generate.fail("kind",
