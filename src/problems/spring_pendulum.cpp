@@ -56,7 +56,7 @@ Problem spring_pendulum(const ProblemParameters& given) {
          const double extension = y.head(3).norm() - l;
          return 0.5 * m * y.tail(3).squaredNorm() + 0.5 * k * extension * extension + m * g * y[2];
        }},
-      {"angular_momentum_z", "kg m^2/s",
+      {"angular_momentum_z", "kg*m^2/s",
        [m](double, ConstVectorRef y) { return m * (y[0] * y[4] - y[1] * y[3]); }}};
   problem.stiffness = spectral_radius_along_solution(problem.ivp);
   problem.parameters = parameters.text();
