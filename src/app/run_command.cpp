@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/auxv.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -32,9 +33,15 @@ struct RunArguments {
 
 /// SHA-256 of the executable: cases that other code computed are not taken for finished.
 std::string program_identity() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (bytes.empty()) throw SystemError("cannot read /proc/self/exe to identify the program");
+  // Without /proc (a bare chroot) the kernel still tells the path that was executed.
+  const auto* executed = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  std::string bytes;
+  for (const char* path : {"/proc/self/exe", executed}) {
+    if (path == nullptr || !bytes.empty()) continue;
+    std::ifstream file(path, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  if (bytes.empty()) throw SystemError("cannot read the executable to identify the program");
   return sha256_hex(bytes);
 }
 

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "samples.hpp"
 #include "scratch_directory.hpp"
@@ -11,11 +12,9 @@ namespace {
 
 /// Peak of resident memory of this process [bytes].
 std::size_t peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmHWM:", 0) == 0) return std::stoul(line.substr(6)) * 1024;
-  }
-  return 0;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
 TEST(TrajectoryWriter, StreamsTenThousandFramesInBoundedMemory) {
