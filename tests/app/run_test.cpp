@@ -31,6 +31,19 @@ std::size_t count(const std::string& text, const std::string& word) {
 
 class Run : public ::testing::Test {
  protected:
+  /// Waits until the run of s.toml into r has kept a case, at most a minute.
+  void wait_for_a_kept_case() const {
+    for (int tenth = 0; tenth < 600; ++tenth) {
+      std::error_code missing;
+      for (const auto& entry : std::filesystem::directory_iterator(scratch_ / "r" / ".s.cases", missing)) {
+        const std::string name = entry.path().filename().string();
+        if (name.front() != '.' && entry.path().extension() == ".h5") return;
+      }
+      ::usleep(100'000);
+    }
+    FAIL() << "no case was kept within a minute";
+  }
+
   ProcessResult run_study(const std::string& directory, const Words& options = {}) const {
     Words all{"run", "s.toml", "-o", directory};
     all.insert(all.end(), options.begin(), options.end());
@@ -126,7 +139,7 @@ TEST_F(Run, GoesOnWhereItWasInterrupted) {
   const std::string problem = "]\n[[problem]]\nname = 'harmonic_oscillator'\nt_end = 100\n";
   write_bytes(scratch_ / "s.toml", head + "1e-9" + problem);
   Process process(scratch_.path(), {"run", "s.toml", "-o", "r"});
-  ::usleep(1'000'000);
+  wait_for_a_kept_case();
   process.send(SIGINT);
   const ProcessResult stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 3) << stopped.signal;
@@ -146,7 +159,7 @@ TEST_F(Run, LosesNoFinishedCaseWhenKilled) {
               "kind = 'simulate'\ntitle = 'T'\nmethods = ['rk4']\nframes = 11\nsteps = [1e-2, 1e-9]\n"
               "[[problem]]\nname = 'harmonic_oscillator'\nt_end = 100\n");
   Process process(scratch_.path(), {"run", "s.toml", "-o", "r"});
-  ::usleep(1'000'000);
+  wait_for_a_kept_case();
   process.send(SIGKILL);
   EXPECT_EQ(process.wait().signal, SIGKILL);
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "r" / "s.h5"));
