@@ -53,6 +53,7 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   const Vector& mass() const override { return mass_; }
   const std::vector<char>& fixed() const override { return fixed_; }
   ForceClass force_class() const override { return force_class_; }
+  bool has_springs() const override { return true; }
   void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
   SparseMatrix tangent_pattern() const override;
   /// `model` acts per element: see `spring_tangent` and `obstacle_tangent`. Under `psd_projection` −K is

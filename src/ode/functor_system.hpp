@@ -138,6 +138,7 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
   const Vector& mass() const override { return mass_; }
   const std::vector<char>& fixed() const override { return fixed_; }
   ForceClass force_class() const override { return force_class_; }
+  bool has_springs() const override { return false; }
   void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override {
     functor_(t, std::span<const double>(q.data(), count()), std::span<const double>(v.data(), count()),
              std::span<double>(f.data(), count()));

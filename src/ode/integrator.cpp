@@ -9,6 +9,20 @@
 
 namespace fw {
 
+std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system) {
+  const SecondOrderSystem* second_order = system.second_order();
+  if (info.needs_second_order && second_order == nullptr) {
+    return "the method needs M q'' = f(t, q, q'), the problem is y' = f(t, y)";
+  }
+  if (info.needs_position_forces && second_order->force_class() != ForceClass::position) {
+    return "the method needs forces f(t, q), those of the problem depend on velocity";
+  }
+  if (info.needs_springs && !second_order->has_springs()) {
+    return "the method needs a mass-spring system";
+  }
+  return {};
+}
+
 Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
   if (!ivp.system) throw InputError("initial value problem without a system");
   if (ivp.y0.size() != ivp.system->size()) {
@@ -19,10 +33,8 @@ Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer&
   if (!std::isfinite(ivp.t0) || !std::isfinite(ivp.t1) || ivp.t1 <= ivp.t0) {
     throw InputError(fmt::format("end time: found {}, expected a finite number > {}", ivp.t1, ivp.t0));
   }
-  if (info().needs_second_order && ivp.system->second_order() == nullptr) {
-    throw InputError(fmt::format(
-        "method \"{}\" needs a second-order system M q'' = f(t, q, q'), which this problem is not",
-        info().name));
+  if (const std::string why = why_not_applicable(info(), *ivp.system); !why.empty()) {
+    throw InputError(fmt::format("method \"{}\": {}", info().name, why));
   }
   const auto start = std::chrono::steady_clock::now();
   Solution solution = do_solve(ivp, control, observer);

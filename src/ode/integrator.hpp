@@ -1,7 +1,9 @@
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "core/status.hpp"
 #include "core/work.hpp"
@@ -29,14 +31,25 @@ struct MethodInfo {
   int stages = 1;                      ///< right-hand sides per step, first-same-as-last not counted twice
   bool is_explicit = true;
   bool is_multistep = false;
-  bool is_adaptive = false;  ///< chooses its own steps from tolerances
+  bool is_adaptive = false;     ///< can choose its own steps from tolerances
+  bool has_fixed_step = true;   ///< can run with a constant step
+  int embedded_order = 0;       ///< order of the solution that the error estimate compares with; 0: none
   bool is_symplectic = false;
   bool is_a_stable = false;
   bool is_l_stable = false;
-  bool needs_second_order = false;  ///< works on M q̈ = f(t, q, v) only
+  bool needs_second_order = false;     ///< works on M q̈ = f(t, q, v) only
+  bool needs_position_forces = false;  ///< works where f = f(t, q) only
+  bool needs_springs = false;          ///< works on mass-spring systems only
   std::string formula{};            ///< one step in formula
   std::string reference{};          ///< literature
 };
+
+/// Why a scheme cannot run on this system, as a clause for people ("the method needs ..."); empty if it can.
+std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system);
+
+/// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double cannot
+/// show.
+using ExtendedSolver = std::function<std::vector<Float128>(const Ivp& ivp, std::uint64_t steps)>;
 
 /// A time integrator. It is immutable; all state of a run lives in the run.
 class Integrator {
@@ -44,6 +57,9 @@ class Integrator {
   virtual ~Integrator() = default;
 
   virtual const MethodInfo& info() const = 0;
+
+  /// The same scheme in binary128; an empty function where there is none.
+  virtual const ExtendedSolver& extended_solver() const = 0;
 
   /// Solves `ivp` and shows every accepted step to `observer`. A numerical failure is a Status of the
   /// returned Solution, whose time and state are the last good ones. Throws InputError where the scheme

@@ -40,6 +40,9 @@ class SecondOrderSystem {
 
   virtual ForceClass force_class() const = 0;
 
+  /// Whether this is a mass-spring system, for schemes that are made for springs.
+  virtual bool has_springs() const = 0;
+
   /// f(t, q, v) [N]; rows of fixed degrees of freedom are zero.
   virtual void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const = 0;
 

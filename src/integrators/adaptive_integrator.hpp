@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "integrators/step_size_controller.hpp"
+#include "integrators/stepper.hpp"
+
+namespace fw::integrators {
+
+/// Makes the state of a run with variable steps.
+using AdaptiveStepperFactory = std::function<std::unique_ptr<AdaptiveStepper>(const Ivp& ivp, Work& work)>;
+
+/// A hand-written scheme with an error estimate: runs with a constant step as well as with steps chosen by tolerances.
+class AdaptiveIntegrator final : public Integrator {
+ public:
+  AdaptiveIntegrator(MethodInfo info, ControllerOptions options, AdaptiveStepperFactory make_stepper,
+                     ExtendedSolver extended_solver = {})
+      : info_(std::move(info)),
+        options_(options),
+        make_stepper_(std::move(make_stepper)),
+        extended_solver_(std::move(extended_solver)) {}
+
+  const MethodInfo& info() const override { return info_; }
+  const ExtendedSolver& extended_solver() const override { return extended_solver_; }
+
+ private:
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
+
+  MethodInfo info_;
+  ControllerOptions options_;
+  AdaptiveStepperFactory make_stepper_;
+  ExtendedSolver extended_solver_;
+};
+
+}  // namespace fw::integrators

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <variant>
+
+#include "schemes/additive_tableau.hpp"
+#include "schemes/butcher_tableau.hpp"
+#include "schemes/multistep_formula.hpp"
+#include "schemes/nystrom_tableau.hpp"
+#include "schemes/rosenbrock_tableau.hpp"
+#include "schemes/splitting_scheme.hpp"
+
+namespace fw::schemes {
+
+/// What defines a scheme; std::monostate where it is not given by coefficients.
+using SchemeData = std::variant<std::monostate, ButcherTableau, NystromTableau, SplittingScheme, RosenbrockTableau,
+                                AdditiveTableau, MultistepFormula>;
+
+}  // namespace fw::schemes
