@@ -77,7 +77,7 @@ TEST(FreeNetwork, LosesAngularMomentumUnderImplicitAndExplicitEuler) {
   // Negative control of the observer: these schemes are known not to conserve it.
   const Ivp ivp = random_network(23, {.is_damped = false, .is_free = true}, 2.0);
   EXPECT_GT(momentum_drift(*make_implicit_euler(), ivp, 1e-2).angular, 1e-4);
-  EXPECT_GT(momentum_drift(*make_explicit_runge_kutta(tableaus().front()), ivp, 1e-2).angular, 1e-4);
+  EXPECT_GT(momentum_drift(*make_explicit_runge_kutta(schemes::explicit_tableaus().front()), ivp, 1e-2).angular, 1e-4);
 }
 
 TEST(FixedPoints, AreBitIdenticalToTheirStart) {

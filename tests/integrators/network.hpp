@@ -8,7 +8,7 @@
 #include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/symplectic_euler.hpp"
-#include "integrators/tableaus.hpp"
+#include "schemes/explicit_tableaus.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
 #include "mechanics/mass_spring_system.hpp"
@@ -64,7 +64,7 @@ inline Ivp random_network(std::uint64_t seed, const NetworkOptions& options, dou
 /// Every hand-written fixed-step scheme.
 inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   std::vector<std::unique_ptr<Integrator>> list;
-  for (const ButcherTableau& tableau : tableaus()) list.push_back(make_explicit_runge_kutta(tableau));
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) list.push_back(make_explicit_runge_kutta(tableau));
   list.push_back(make_symplectic_euler());
   list.push_back(make_verlet(VerletVelocity::central));
   list.push_back(make_verlet(VerletVelocity::backward));

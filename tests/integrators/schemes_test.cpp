@@ -50,9 +50,9 @@ TEST(Rk4, IntegratesCubicsExactly) {
   ivp.system = std::make_shared<FunctorSystem<CubicSlope>>(1, CubicSlope{});
   ivp.y0 = Vector{{0.25}};
   ivp.t1 = 1.0;
-  const auto is_rk4 = [](const ButcherTableau& tableau) { return tableau.name == "rk4"; };
-  const auto rk4 = std::find_if(tableaus().begin(), tableaus().end(), is_rk4);
-  ASSERT_NE(rk4, tableaus().end());
+  const auto is_rk4 = [](const schemes::ButcherTableau& tableau) { return tableau.name == "rk4"; };
+  const auto rk4 = std::find_if(schemes::explicit_tableaus().begin(), schemes::explicit_tableaus().end(), is_rk4);
+  ASSERT_NE(rk4, schemes::explicit_tableaus().end());
   const Solution solution = run(*make_explicit_runge_kutta(*rk4), ivp, 1.0);
   EXPECT_NEAR(solution.state[0], 1.25, 1e-15);
   EXPECT_EQ(solution.work.rhs_evaluations, 4u);
@@ -71,7 +71,7 @@ TEST(SymplecticEuler, UsesTheNewVelocityAndExplicitEulerTheOldOne) {
   Ivp ivp = falling_mass();
   ivp.t1 = 0.5;  // one step: v' = 4 − 2·½ = 3
   EXPECT_DOUBLE_EQ(run(*make_symplectic_euler(), ivp, 0.5).state[0], 1.5 + 0.5 * 3.0);
-  EXPECT_DOUBLE_EQ(run(*make_explicit_runge_kutta(tableaus().front()), ivp, 0.5).state[0], 1.5 + 0.5 * 4.0);
+  EXPECT_DOUBLE_EQ(run(*make_explicit_runge_kutta(schemes::explicit_tableaus().front()), ivp, 0.5).state[0], 1.5 + 0.5 * 4.0);
 }
 
 TEST(Schemes, EvaluateTheForceAtTheRightTime) {
@@ -150,7 +150,7 @@ TEST(ExplicitEuler, GrowsOnTheCircleByTheFactorOfTheLecture) {
   Ivp ivp = problem.ivp;
   const double h = 0.01;
   ivp.t1 = 10.0;
-  const Solution solution = run(*make_explicit_runge_kutta(tableaus().front()), ivp, h);
+  const Solution solution = run(*make_explicit_runge_kutta(schemes::explicit_tableaus().front()), ivp, h);
   EXPECT_NEAR(solution.state.norm() / ivp.y0.norm(), std::pow(1.0 + h * h, 500.0), 1e-10);
 }
 
@@ -278,7 +278,7 @@ TEST(Schemes, CountTheirForces) {
   EXPECT_EQ(forces(*make_velocity_verlet()), 101u);
   EXPECT_EQ(forces(*make_verlet(VerletVelocity::central)), 101u);
   EXPECT_EQ(forces(*make_verlet(VerletVelocity::backward)), 101u);
-  for (const ButcherTableau& tableau : tableaus()) {
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
     EXPECT_EQ(forces(*make_explicit_runge_kutta(tableau)), 100u * static_cast<unsigned>(tableau.stages()));
   }
 }
