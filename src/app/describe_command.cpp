@@ -10,7 +10,6 @@
 #include "catalog/study_kinds.hpp"
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
-#include "integrators/tableaus.hpp"
 #include "scene/generators.hpp"
 #include "store/json_writer.hpp"
 

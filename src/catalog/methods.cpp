@@ -22,7 +22,7 @@ namespace {
 
 /// A method without options.
 MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
-  return {make()->info(), {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+  return {make()->info(), {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
 }
 
 /// The value of an option out of a list of names.
@@ -78,7 +78,7 @@ template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
   MethodInfo info = make(data, integrators::ControllerOptions{})->info();
   const bool adaptive = info.is_adaptive;
-  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{},
+  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{}, data,
           [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
 }
 
@@ -89,6 +89,7 @@ MethodEntry linearised_implicit_euler() {
           {{"linear_solver", "cg", "cg (conjugate gradients), cholesky or lu"},
            {"linear_tolerance", "1e-10", "relative residual of cg"},
            {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
+          {},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
             chosen.linear_solver.kind =
@@ -111,6 +112,7 @@ MethodEntry cvode_bdf() {
   return {oracles::make_cvode_bdf()->info(),
           {{"tolerance_factor", fmt::format("{}", defaults.tolerance_factor),
             "CVODE's own tolerances as a fraction of those given"}},
+          {},
           [defaults](const MethodOptions& options) {
             return oracles::make_cvode_bdf({.tolerance_factor = positive_number(options, "tolerance_factor",
                                                                                 defaults.tolerance_factor)});
