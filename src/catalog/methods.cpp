@@ -10,11 +10,13 @@
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
-#include "integrators/symplectic_euler.hpp"
-#include "integrators/velocity_verlet.hpp"
+#include "integrators/nystrom.hpp"
+#include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "schemes/explicit_tableaus.hpp"
+#include "schemes/nystrom_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
 
 namespace fw::catalog {
 
@@ -73,7 +75,8 @@ integrators::ControllerOptions read_controller(const MethodOptions& options) {
   return chosen;
 }
 
-/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the list.
+/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the
+/// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
   MethodInfo info = make(data, integrators::ControllerOptions{})->info();
@@ -124,10 +127,16 @@ std::vector<MethodEntry> make_list() {
   for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_explicit_runge_kutta));
   }
-  list.push_back(plain(integrators::make_symplectic_euler));
+  for (const schemes::NystromTableau& tableau : schemes::nystrom_tableaus()) {
+    list.push_back(with_controller(tableau, integrators::make_nystrom));
+  }
+  for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
+    list.push_back({integrators::make_splitting(scheme)->info(), {}, scheme, [&scheme](const MethodOptions&) {
+                      return integrators::make_splitting(scheme);
+                    }});
+  }
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
-  list.push_back(plain(integrators::make_velocity_verlet));
   list.push_back(plain(integrators::make_implicit_euler));
   list.push_back(linearised_implicit_euler());
   list.push_back(cvode_bdf());

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <vector>
 
 #include "integrators/implicit_kick.hpp"
 #include "integrators/stepper.hpp"
+#include "schemes/derived_properties.hpp"
 #include "schemes/order_conditions.hpp"
 
 namespace fw::integrators {
@@ -114,6 +114,8 @@ class SplittingStepper final : public Stepper {
   bool predicts_ = false;   ///< force_ is a force of some kick before
 };
 
+constexpr double binary128_rounding = 1e-33;
+
 /// Solves a = g(t, x, v + c a) for the acceleration `a` (which holds a guess) by fixed-point iteration down
 /// to rounding. Steps of a convergence study are small, so that it contracts.
 class ExtendedKick {
@@ -123,8 +125,7 @@ class ExtendedKick {
   void solve(const Float128& t, const Float128& c, const std::vector<Float128>& y, std::vector<Float128>& a) {
     const std::size_t n = a.size();
     const bool is_implicit = c != 0 && system_.second_order()->force_class() == ForceClass::velocity;
-    const Float128 rounding = 4 * std::numeric_limits<Float128>::epsilon();
-    Float128 previous = std::numeric_limits<Float128>::max();
+    Float128 previous = 0;
     constexpr int most_iterations = 500;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
       state_ = y;
@@ -140,7 +141,8 @@ class ExtendedKick {
         if (magnitude > size) size = magnitude;
         a[k] = slope_[n + k];
       }
-      if (!is_implicit || change <= rounding * size || (change >= previous && change <= 1e-28 * size)) return;
+      const bool stagnates = iteration > 0 && change >= previous && change <= 1e-28 * size;
+      if (!is_implicit || change <= binary128_rounding * size || stagnates) return;
       previous = change;
     }
   }
@@ -202,6 +204,7 @@ std::unique_ptr<Integrator> make_splitting(const schemes::SplittingScheme& schem
                   .order = schemes::order_of_accuracy(scheme, false),
                   .order_with_velocity_forces = schemes::order_of_accuracy(scheme, true),
                   .stages = static_cast<int>(exact.kicks.size()) - (exact.first_same_as_last ? 1 : 0),
+                  .is_symplectic = schemes::is_symplectic(schemes::as_nystrom(scheme)),
                   .needs_second_order = true,
                   .formula = formula(scheme),
                   .reference = scheme.reference};
