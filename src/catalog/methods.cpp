@@ -7,14 +7,15 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/symplectic_euler.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "schemes/explicit_tableaus.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::catalog {
 
@@ -73,7 +74,8 @@ integrators::ControllerOptions read_controller(const MethodOptions& options) {
   return chosen;
 }
 
-/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the list.
+/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the
+/// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
   MethodInfo info = make(data, integrators::ControllerOptions{})->info();
@@ -126,7 +128,12 @@ std::vector<MethodEntry> make_list() {
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
   list.push_back(plain(integrators::make_velocity_verlet));
-  list.push_back(plain(integrators::make_implicit_euler));
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
+        }));
+  }
   list.push_back(linearised_implicit_euler());
   list.push_back(cvode_bdf());
   return list;

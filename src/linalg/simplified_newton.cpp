@@ -64,10 +64,11 @@ SimplifiedNewton::Outcome SimplifiedNewton::iterate(NewtonProblem& problem, Vect
   return Outcome::diverged;
 }
 
-Status SimplifiedNewton::solve(NewtonProblem& problem, VectorRef u, double parameter, double scale, double floor,
-                               Work& work) {
+Status SimplifiedNewton::solve(NewtonProblem& problem, VectorRef u, double parameter, double scale,
+                               double floor, Work& work) {
   start_ = u;
-  const bool is_reused = has_matrix_ && parameter == parameter_ && !is_slow_;
+  const bool is_reused =
+      has_matrix_ && parameter == parameter_ && !is_slow_ && options_.rate_of_renewal > 0.0;
   if (!is_reused) {
     if (Status status = renew(problem, u, parameter, work); !status.ok()) return status;
   }

@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/symplectic_euler.hpp"
-#include "integrators/tableaus.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/random_model.hpp"
+#include "schemes/explicit_tableaus.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::integrators {
 
@@ -61,15 +62,27 @@ inline Ivp random_network(std::uint64_t seed, const NetworkOptions& options, dou
   return ivp;
 }
 
+inline const std::vector<schemes::ButcherTableau>& tableaus() {
+  return schemes::explicit_tableaus();
+}
+
+/// The first entry of the list, implicit Euler.
+inline std::unique_ptr<Integrator> make_implicit_euler() {
+  return make_diagonally_implicit_runge_kutta(schemes::diagonally_implicit_tableaus().front());
+}
+
 /// Every hand-written fixed-step scheme.
 inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   std::vector<std::unique_ptr<Integrator>> list;
-  for (const ButcherTableau& tableau : tableaus()) list.push_back(make_explicit_runge_kutta(tableau));
+  for (const schemes::ButcherTableau& tableau : tableaus())
+    list.push_back(make_explicit_runge_kutta(tableau));
   list.push_back(make_symplectic_euler());
   list.push_back(make_verlet(VerletVelocity::central));
   list.push_back(make_verlet(VerletVelocity::backward));
   list.push_back(make_velocity_verlet());
-  list.push_back(make_implicit_euler());
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
   for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
                     linalg::LinearSolverKind::sparse_lu}) {
     list.push_back(make_implicit_euler_linearised({.linear_solver = {.kind = kind}}));
