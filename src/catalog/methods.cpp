@@ -7,8 +7,8 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
 #include "integrators/splitting.hpp"
@@ -17,6 +17,7 @@
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/nystrom_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::catalog {
 
@@ -137,7 +138,12 @@ std::vector<MethodEntry> make_list() {
   }
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
-  list.push_back(plain(integrators::make_implicit_euler));
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
+        }));
+  }
   list.push_back(linearised_implicit_euler());
   list.push_back(cvode_bdf());
   return list;
