@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 LAYERS = [
-    "core", "ode", "linalg", "mechanics", "problems", "mesh", "scene", "constraints", "collision", "integrators",
+    "core", "ode", "schemes", "linalg", "mechanics", "problems", "mesh", "scene", "constraints", "collision", "integrators",
     "oracles", "analysis", "study", "store", "catalog", "app",
 ]
 

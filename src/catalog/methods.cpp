@@ -11,10 +11,10 @@
 #include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/symplectic_euler.hpp"
-#include "integrators/tableaus.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
+#include "schemes/explicit_tableaus.hpp"
 
 namespace fw::catalog {
 
@@ -51,6 +51,35 @@ double positive_number(const MethodOptions& options, const std::string& name, do
         fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
   }
   return value;
+}
+
+/// Options of a scheme that can choose its own steps.
+const std::vector<OptionInfo> controller_options = {
+    {"controller", "pi", "i, pi or pid (how steps follow from error estimates)"},
+    {"norm", "rms", "rms or max (how the error vector becomes a number)"},
+    {"safety", "0.9", "factor of the predicted step"}};
+
+integrators::ControllerOptions read_controller(const MethodOptions& options) {
+  using integrators::ControllerKind;
+  using integrators::ErrorNorm;
+  integrators::ControllerOptions chosen;
+  chosen.kind = choose<ControllerKind>(options, "controller", chosen.kind,
+                                       {{"i", ControllerKind::integral},
+                                        {"pi", ControllerKind::proportional_integral},
+                                        {"pid", ControllerKind::proportional_integral_derivative}});
+  chosen.norm = choose<ErrorNorm>(options, "norm", chosen.norm,
+                                  {{"rms", ErrorNorm::root_mean_square}, {"max", ErrorNorm::maximum}});
+  chosen.safety = positive_number(options, "safety", chosen.safety);
+  return chosen;
+}
+
+/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the list.
+template <class Data, class Make>
+MethodEntry with_controller(const Data& data, Make make) {
+  MethodInfo info = make(data, integrators::ControllerOptions{})->info();
+  const bool adaptive = info.is_adaptive;
+  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{},
+          [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
 }
 
 MethodEntry linearised_implicit_euler() {
@@ -90,8 +119,8 @@ MethodEntry cvode_bdf() {
 
 std::vector<MethodEntry> make_list() {
   std::vector<MethodEntry> list;
-  for (const integrators::ButcherTableau& tableau : integrators::tableaus()) {
-    list.push_back(plain([&tableau] { return integrators::make_explicit_runge_kutta(tableau); }));
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
+    list.push_back(with_controller(tableau, integrators::make_explicit_runge_kutta));
   }
   list.push_back(plain(integrators::make_symplectic_euler));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));

@@ -3,47 +3,29 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
+#include "integrators/hermite_interpolant.hpp"
+#include "integrators/run_checks.hpp"
 
 namespace fw::integrators {
 
-namespace {
-
-/// No physical state comes near this; one that does has left the scheme's region of stability.
-constexpr double blow_up_bound = 1e100;
-
-Status check_state(ConstVectorRef y, double t, std::uint64_t step) {
-  if (!y.allFinite()) {
-    return {StatusCode::non_finite,
-            fmt::format("the state is not finite after step {} at t = {:.6g}", step, t)};
-  }
-  if (y.lpNorm<Eigen::Infinity>() > blow_up_bound) {
-    return {StatusCode::blow_up,
-            fmt::format("the state exceeds {:g} after step {} at t = {:.6g}", blow_up_bound, step, t)};
-  }
-  return {};
-}
-
-}  // namespace
-
-Solution FixedStepIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
-  const auto* fixed = std::get_if<FixedStep>(&control);
-  if (fixed == nullptr) {
-    throw InputError(fmt::format("method \"{}\" has a fixed step: give a step, not tolerances", info_.name));
-  }
-  const double h = fixed->step;
-  const StepCount count = fixed->allow_short_last_step && !info_.is_multistep
+Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp,
+                         const FixedStep& control, Observer& observer) {
+  const double h = control.step;
+  const StepCount count = control.allow_short_last_step && !info.is_multistep
                               ? count_steps(ivp.t0, ivp.t1, h)
-                              : count_whole_steps(info_.name, ivp.t0, ivp.t1, h);
-  const std::function<void(double, VectorRef)> no_dense_output;
+                              : count_whole_steps(info.name, ivp.t0, ivp.t1, h);
+  const std::function<void(double, VectorRef)> nothing_yet;
   Solution solution;
   solution.time = ivp.t0;
   solution.state = ivp.y0;
-  if (!observer.observe({0, ivp.t0, ivp.y0, false, no_dense_output})) {
+  if (!observer.observe({0, ivp.t0, ivp.y0, false, nothing_yet})) {
     solution.status = {StatusCode::stopped_by_observer, "stopped at the start"};
     return solution;
   }
-  const std::unique_ptr<Stepper> stepper = make_stepper_(ivp, h, solution.work);
+  const std::unique_ptr<Stepper> stepper = make_stepper(ivp, h, solution.work);
   Vector y = ivp.y0;
+  HermiteInterpolant hermite(*ivp.system, solution.work);
+  const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) { hermite(t, out); };
   const std::uint64_t total = count.total();
   for (std::uint64_t n = 0; n < total; ++n) {
     const double t = ivp.t0 + static_cast<double>(n) * h;
@@ -60,15 +42,25 @@ Solution FixedStepIntegrator::do_solve(const Ivp& ivp, const StepControl& contro
       solution.status = std::move(status);
       return solution;
     }
+    ++solution.work.accepted_steps;
+    hermite.set_step(t, t_next, solution.state, y);
+    const bool go_on = observer.observe({n + 1, t_next, y, last, interpolate});
     solution.time = t_next;
     solution.state = y;
-    ++solution.work.accepted_steps;
-    if (!observer.observe({n + 1, t_next, y, last, no_dense_output}) && !last) {
+    if (!go_on && !last) {
       solution.status = {StatusCode::stopped_by_observer, fmt::format("stopped at t = {:.6g}", t_next)};
       return solution;
     }
   }
   return solution;
+}
+
+Solution FixedStepIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
+  const auto* fixed = std::get_if<FixedStep>(&control);
+  if (fixed == nullptr) {
+    throw InputError(fmt::format("method \"{}\" has a fixed step: give a step, not tolerances", info_.name));
+  }
+  return run_fixed_steps(info_, make_stepper_, ivp, *fixed, observer);
 }
 
 }  // namespace fw::integrators

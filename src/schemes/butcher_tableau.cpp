@@ -44,8 +44,8 @@ TableauValues<S> values(const ButcherTableau& tableau) {
       Float128 sum = 0;
       for (const Coefficient& a : tableau.A[i]) sum += a.value();
       // Decimals of a source may miss the node that they mean, 1 for example, in their last digit.
-      const Float128 rounded = round(sum * 1e15Q) / 1e15Q;
-      result.c[i] = static_cast<double>(abs(sum - rounded) < 1e-17Q ? rounded : sum);
+      const Float128 rounded = round(Float128(sum * 1e15)) / 1e15;
+      result.c[i] = static_cast<double>(abs(sum - rounded) < 1e-17 ? rounded : sum);
     } else {
       for (std::size_t j = 0; j < s; ++j) result.c[i] += result.a[i * s + j];
     }

@@ -84,6 +84,7 @@ class CvodeBdf final : public Integrator {
   explicit CvodeBdf(const CvodeOptions& options) : options_(options) {}
 
   const MethodInfo& info() const override { return info_; }
+  const ExtendedSolver& extended_solver() const override { return no_extended_solver_; }
 
  private:
   Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override {
@@ -185,6 +186,7 @@ class CvodeBdf final : public Integrator {
   }
 
   CvodeOptions options_;
+  ExtendedSolver no_extended_solver_;
   MethodInfo info_{
       .name = "sundials:cvode_bdf",
       .title = "CVODE, variable-order BDF with Newton and KLU",
@@ -195,6 +197,7 @@ class CvodeBdf final : public Integrator {
       .is_explicit = false,
       .is_multistep = true,
       .is_adaptive = true,
+      .has_fixed_step = false,
       .formula = "backward differentiation formulas of orders 1-5, steps and order chosen by error",
       .reference = "[Hindmarsh et al. 2005]"};
 };
