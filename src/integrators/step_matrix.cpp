@@ -41,11 +41,16 @@ StepMatrix::StepMatrix(const SecondOrderSystem& system)
 
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v, double h,
                                          TangentModel model) {
+  return assemble(t, q, v, {.damping = -h, .stiffness = -h * h}, model);
+}
+
+const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v,
+                                         const MatrixFactors& factors, TangentModel model) {
   system_.stiffness(t, q, v, model, stiffness_);
   system_.damping(t, q, v, damping_);
-  matrix_.coeffs() = -h * damping_.coeffs() - (h * h) * stiffness_.coeffs();
+  matrix_.coeffs() = factors.damping * damping_.coeffs() + factors.stiffness * stiffness_.coeffs();
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    matrix_.valuePtr()[diagonal_[i]] += system_.mass()[static_cast<Index>(i)];
+    matrix_.valuePtr()[diagonal_[i]] += factors.mass * system_.mass()[static_cast<Index>(i)];
   }
   return matrix_;
 }

@@ -4,8 +4,10 @@ namespace fw::schemes {
 
 namespace {
 
-constexpr const char* adams_reference = "[Hairer, Nørsett, Wanner 1993, III.1; Bashforth, Adams 1883; Moulton 1926]";
-constexpr const char* bdf_reference = "[Curtiss, Hirschfelder 1952; Gear 1971; Hairer, Nørsett, Wanner 1993, III.1]";
+constexpr const char* adams_reference =
+    "[Hairer, Nørsett, Wanner 1993, III.1; Bashforth, Adams 1883; Moulton 1926]";
+constexpr const char* bdf_reference =
+    "[Curtiss, Hirschfelder 1952; Gear 1971; Hairer, Nørsett, Wanner 1993, III.1]";
 
 std::vector<MultistepFormula> make_list() {
   return {

@@ -16,8 +16,10 @@ namespace {
 using Roots = Eigen::VectorXcd;
 
 void check(const MultistepFormula& formula) {
-  if (formula.steps() < 1 || formula.alpha.size() != formula.beta.size() || as<Rational>(formula.alpha.back()) != 1) {
-    throw std::logic_error("multistep formula \"" + formula.name + "\": expected k + 1 ≥ 2 coefficients α and as many β, "
+  if (formula.steps() < 1 || formula.alpha.size() != formula.beta.size() ||
+      as<Rational>(formula.alpha.back()) != 1) {
+    throw std::logic_error("multistep formula \"" + formula.name +
+                           "\": expected k + 1 ≥ 2 coefficients α and as many β, "
                            "with α_k = 1");
   }
 }

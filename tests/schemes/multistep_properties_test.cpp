@@ -12,12 +12,14 @@ namespace {
 
 const MultistepFormula& find(const std::string& name) {
   const auto& list = multistep_formulas();
-  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& formula) { return formula.name == name; });
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const auto& formula) { return formula.name == name; });
   if (found == list.end()) throw std::logic_error("no formula " + name);
   return *found;
 }
 
-/// The backward differentiation formula of order k from its definition Σ_{m=1}^{k} (1/m) ∇^m y_{n+k} = h f_{n+k}.
+/// The backward differentiation formula of order k from its definition Σ_{m=1}^{k} (1/m) ∇^m y_{n+k} = h
+/// f_{n+k}.
 MultistepFormula backward_differentiation(int k) {
   std::vector<Rational> alpha(static_cast<std::size_t>(k) + 1, 0);
   for (int m = 1; m <= k; ++m) {
@@ -56,7 +58,8 @@ TEST(MultistepFormulas, HaveTheErrorConstantsOfTheLiterature) {
   EXPECT_EQ(error_constant(find("adams_moulton3")), Rational(-1, 24));
   EXPECT_EQ(error_constant(find("adams_moulton4")), Rational(-19, 720));
   EXPECT_EQ(error_constant(find("adams_moulton5")), Rational(-3, 160));
-  for (int k = 2; k <= 6; ++k) EXPECT_EQ(error_constant(find("bdf" + std::to_string(k))), Rational(-1, k + 1));
+  for (int k = 2; k <= 6; ++k)
+    EXPECT_EQ(error_constant(find("bdf" + std::to_string(k))), Rational(-1, k + 1));
 }
 
 TEST(MultistepFormulas, OfBackwardDifferentiationFollowFromBackwardDifferences) {
@@ -121,7 +124,8 @@ TEST(StabilityAngle, SeparatesStableFromUnstableSteps) {
 
 TEST(Stability, OfAandLIsThatOfTheLiterature) {
   for (const MultistepFormula& formula : multistep_formulas()) {
-    EXPECT_EQ(is_a_stable(formula), formula.name == "bdf2" || formula.name == "adams_moulton2") << formula.name;
+    EXPECT_EQ(is_a_stable(formula), formula.name == "bdf2" || formula.name == "adams_moulton2")
+        << formula.name;
     EXPECT_EQ(is_l_stable(formula), formula.name == "bdf2") << formula.name;
   }
 }
