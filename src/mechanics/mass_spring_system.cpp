@@ -10,6 +10,7 @@
 #include "mechanics/mass_spring_force.hpp"
 #include "mechanics/mass_spring_tangent.hpp"
 #include "mechanics/model_validation.hpp"
+#include "mechanics/tangent_fill.hpp"
 
 namespace fw::mechanics {
 
@@ -27,42 +28,6 @@ MassSpringModel validated(MassSpringModel model) {
   validate(model);
   return model;
 }
-
-void require_pattern(const SparseMatrix& matrix, Index size, Index nonzeros, const char* name) {
-  if (matrix.rows() != size || matrix.cols() != size || !matrix.isCompressed() ||
-      matrix.nonZeros() != nonzeros) {
-    throw InputError(
-        fmt::format("{}: found {} x {} with {} entries, expected {} x {} with {} compressed entries, as the "
-                    "pattern has them",
-                    name, matrix.rows(), matrix.cols(), matrix.nonZeros(), size, size, nonzeros));
-  }
-}
-
-/// Fills K or D: `block` picks the block out of an element's tangent.
-template <class Block>
-struct TangentFill {
-  const BlockPattern& pattern;
-  const std::vector<char>& fixed;
-  double* values;
-  Block block;
-
-  bool is_free(int i) const { return fixed[3 * static_cast<std::size_t>(i)] == 0; }
-
-  void point(int i, const auto& tangent) const {
-    if (is_free(i)) add_block(values, pattern.diagonal(i), 1.0, block(tangent));
-  }
-  void pair(std::size_t e, int i, int j, const CentralForceTangent& tangent) const {
-    const Matrix3 k = block(tangent);
-    if (is_free(i)) {
-      add_block(values, pattern.diagonal(i), -1.0, k);
-      add_block(values, pattern.upper(e, j), 1.0, k);
-    }
-    if (is_free(j)) {
-      add_block(values, pattern.diagonal(j), -1.0, k);
-      add_block(values, pattern.lower(e, i), 1.0, k);
-    }
-  }
-};
 
 /// Fills the lower half [M⁻¹K, M⁻¹D] of the Jacobian.
 struct JacobianFill {
@@ -228,6 +193,15 @@ void MassSpringSystem::damping(double, ConstVectorRef q, ConstVectorRef v, Spars
 void MassSpringSystem::tangent_product(double, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq,
                                        ConstVectorRef dv, VectorRef out) const {
   count_degenerate(multiply_tangent(model_, q.data(), v.data(), dq.data(), dv.data(), out.data()));
+}
+
+const ForceSplitting* MassSpringSystem::force_splitting() const {
+  std::call_once(splitting_once_, [this] {
+    if (SpringSplitting::is_possible(model_)) {
+      splitting_ = std::make_unique<const SpringSplitting>(model_, pattern(), fixed_, degenerate_);
+    }
+  });
+  return splitting_.get();
 }
 
 Energies MassSpringSystem::energies(ConstVectorRef q, ConstVectorRef v) const {

@@ -7,6 +7,7 @@
 
 #include "mechanics/block_pattern.hpp"
 #include "mechanics/mass_spring_model.hpp"
+#include "mechanics/spring_splitting.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw::mechanics {
@@ -64,6 +65,8 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   void damping(double t, ConstVectorRef q, ConstVectorRef v, SparseMatrix& D) const override;
   void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq, ConstVectorRef dv,
                        VectorRef out) const override;
+  /// Stiff and soft springs, see `SpringSplitting`; null where no spring has a positive stiffness.
+  const ForceSplitting* force_splitting() const override;
 
   /// Energies of the state (q, v).
   Energies energies(ConstVectorRef q, ConstVectorRef v) const;
@@ -97,6 +100,8 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   ForceClass force_class_;
   mutable std::once_flag pattern_once_;
   mutable std::unique_ptr<const BlockPattern> pattern_;
+  mutable std::once_flag splitting_once_;
+  mutable std::unique_ptr<const SpringSplitting> splitting_;
   mutable std::atomic<std::uint64_t> degenerate_{0};
 };
 

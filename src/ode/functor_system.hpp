@@ -181,6 +181,7 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
       out[static_cast<Index>(i)] = f[i].imag() / detail::complex_step;
     }
   }
+  const ForceSplitting* force_splitting() const override { return nullptr; }
 
  private:
   std::size_t count() const { return static_cast<std::size_t>(mass_.size()); }

@@ -20,6 +20,9 @@ std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system) 
   if (info.needs_springs && !second_order->has_springs()) {
     return "the method needs a mass-spring system";
   }
+  if (info.needs_force_splitting && (second_order == nullptr || second_order->force_splitting() == nullptr)) {
+    return "the method needs forces in a stiff and a soft part, as a mass-spring system has them";
+  }
   return {};
 }
 

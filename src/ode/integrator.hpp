@@ -31,24 +31,25 @@ struct MethodInfo {
   int stages = 1;                      ///< right-hand sides per step, first-same-as-last not counted twice
   bool is_explicit = true;
   bool is_multistep = false;
-  bool is_adaptive = false;     ///< can choose its own steps from tolerances
-  bool has_fixed_step = true;   ///< can run with a constant step
-  int embedded_order = 0;       ///< order of the solution that the error estimate compares with; 0: none
+  bool is_adaptive = false;    ///< can choose its own steps from tolerances
+  bool has_fixed_step = true;  ///< can run with a constant step
+  int embedded_order = 0;      ///< order of the solution that the error estimate compares with; 0: none
   bool is_symplectic = false;
   bool is_a_stable = false;
   bool is_l_stable = false;
   bool needs_second_order = false;     ///< works on M q̈ = f(t, q, v) only
   bool needs_position_forces = false;  ///< works where f = f(t, q) only
   bool needs_springs = false;          ///< works on mass-spring systems only
-  std::string formula{};            ///< one step in formula
-  std::string reference{};          ///< literature
+  bool needs_force_splitting = false;  ///< works where forces come in a stiff and a soft part
+  std::string formula{};               ///< one step in formula
+  std::string reference{};             ///< literature
 };
 
 /// Why a scheme cannot run on this system, as a clause for people ("the method needs ..."); empty if it can.
 std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system);
 
-/// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double cannot
-/// show.
+/// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double
+/// cannot show.
 using ExtendedSolver = std::function<std::vector<Float128>(const Ivp& ivp, std::uint64_t steps)>;
 
 /// A time integrator. It is immutable; all state of a run lives in the run.

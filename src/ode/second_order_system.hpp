@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "ode/force_splitting.hpp"
 
 namespace fw {
 
@@ -61,6 +62,9 @@ class SecondOrderSystem {
   /// out = K·dq + D·dv with the exact K and D, without assembly.
   virtual void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq,
                                ConstVectorRef dv, VectorRef out) const = 0;
+
+  /// The forces in a stiff and a soft part, or null where the system knows no such splitting.
+  virtual const ForceSplitting* force_splitting() const = 0;
 };
 
 }  // namespace fw

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
 #include "integrators/splitting.hpp"
@@ -17,6 +17,7 @@
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/nystrom_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::integrators {
 
@@ -84,7 +85,12 @@ inline std::unique_ptr<Integrator> nystrom(const std::string& name) {
   return make_nystrom(named(schemes::nystrom_tableaus(), name));
 }
 
-/// Every hand-written scheme that takes constant steps and any force.
+/// The first entry of the list, implicit Euler.
+inline std::unique_ptr<Integrator> make_implicit_euler() {
+  return make_diagonally_implicit_runge_kutta(schemes::diagonally_implicit_tableaus().front());
+}
+
+/// Hand-written schemes that take constant steps and any force.
 inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   std::vector<std::unique_ptr<Integrator>> list;
   for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
@@ -96,7 +102,9 @@ inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   }
   list.push_back(make_verlet(VerletVelocity::central));
   list.push_back(make_verlet(VerletVelocity::backward));
-  list.push_back(make_implicit_euler());
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
   for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
                     linalg::LinearSolverKind::sparse_lu}) {
     list.push_back(make_implicit_euler_linearised({.linear_solver = {.kind = kind}}));
