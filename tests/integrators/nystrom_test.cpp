@@ -98,6 +98,13 @@ TEST(NystromMethods, KeepFixedParticlesStill) {
   }
 }
 
+TEST(NystromMethods, KeepTheSharedForceOfARepeatedRunOutOfTheNextOne) {
+  // Two runs of one integrator are independent: all state lives in the run.
+  const Ivp ivp = driven_pair(0.0);
+  const auto integrator = nystrom("dormand_prince_rkn_64");
+  EXPECT_EQ(run(*integrator, ivp, 0.125).state, run(*integrator, ivp, 0.125).state);
+}
+
 TEST(NystromMethods, RefuseDampersWhereTheyAreForPositionForcesOnly) {
   NullObserver observer;
   const Ivp ivp = random_network(34, {}, 1.0);

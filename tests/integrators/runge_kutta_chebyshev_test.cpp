@@ -66,9 +66,9 @@ TEST(RungeKuttaChebyshev, IsTheTableauThatItIsDerivedFrom) {
   const Ivp ivp = driven_pair(0.375);
   for (const int order : {1, 2}) {
     const auto by_tableau = make_explicit_runge_kutta(schemes::chebyshev_tableau(order, 8));
-    const Vector difference =
-        run(*by_tableau, ivp, ivp.t1 / 16.0).state - run(*chebyshev(order, 8), ivp, ivp.t1 / 16.0).state;
-    EXPECT_LT(difference.norm(), 1e-14);
+    EXPECT_LT(
+        distance(by_tableau->extended_solver()(ivp, 16), chebyshev(order, 8)->extended_solver()(ivp, 16)),
+        1e-31);
   }
 }
 
@@ -102,7 +102,9 @@ TEST(RungeKuttaChebyshev, TakesTheStagesThatTheSpectralRadiusAsksFor) {
       if (stages > fewest_chebyshev_stages) {
         EXPECT_LT(schemes::real_stability_interval(order, stages - 1), 1.2 * rate);
       }
-      EXPECT_LT(std::abs(solution.state[1]), 1e-6);
+      // On its interval the method damps by 5 % a step at least (1 − ε, and 1 − ε/3 for order 2): 0.95⁵⁰ =
+      // 0.077.
+      EXPECT_LT(std::abs(solution.state[1]), 0.08);
       EXPECT_GT(solution.work.jacobian_products, 0u);
     }
   }
