@@ -11,13 +11,15 @@
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
+#include "integrators/runge_kutta_chebyshev.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
+#include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/explicit_tableaus.hpp"
+#include "schemes/implicit_tableaus.hpp"
 #include "schemes/nystrom_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
-#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::catalog {
 
@@ -52,6 +54,18 @@ double positive_number(const MethodOptions& options, const std::string& name, do
   if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
     throw InputError(
         fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
+  }
+  return value;
+}
+
+int whole_number(const std::string& name, const std::string& text, int least, int most,
+                 const std::string& alternative = "") {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || value < least || value > most) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number from {} to {}{}", name,
+                                 text, least, most, alternative));
   }
   return value;
 }
@@ -111,6 +125,26 @@ MethodEntry linearised_implicit_euler() {
           }};
 }
 
+MethodEntry runge_kutta_chebyshev(int order) {
+  const integrators::RungeKuttaChebyshevOptions defaults{.order = order};
+  return {integrators::make_runge_kutta_chebyshev(defaults)->info(),
+          {{"stages", fmt::format("{}", defaults.stages),
+            "number of stages, or auto (from the step and the spectral radius of J)"}},
+          schemes::chebyshev_tableau(order, defaults.stages),
+          [defaults](const MethodOptions& options) {
+            integrators::RungeKuttaChebyshevOptions chosen = defaults;
+            const auto option = options.find("stages");
+            if (option != options.end()) {
+              const bool automatic = option->second == "auto";
+              chosen.stages = automatic ? 0
+                                        : whole_number(option->first, option->second,
+                                                       integrators::fewest_chebyshev_stages,
+                                                       integrators::most_chebyshev_stages, " or auto");
+            }
+            return integrators::make_runge_kutta_chebyshev(chosen);
+          }};
+}
+
 MethodEntry cvode_bdf() {
   const oracles::CvodeOptions defaults;
   return {oracles::make_cvode_bdf()->info(),
@@ -136,6 +170,8 @@ std::vector<MethodEntry> make_list() {
                       return integrators::make_splitting(scheme);
                     }});
   }
+  list.push_back(runge_kutta_chebyshev(1));
+  list.push_back(runge_kutta_chebyshev(2));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
