@@ -10,12 +10,14 @@
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/rosenbrock.hpp"
 #include "integrators/symplectic_euler.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "schemes/rosenbrock_tableaus.hpp"
 
 namespace fw::catalog {
 

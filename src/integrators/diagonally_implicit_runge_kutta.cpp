@@ -53,7 +53,7 @@ class DiagonallyImplicitStepper final : public AdaptiveStepper {
     combine(y, h, tableau_.b, slopes_.size(), y_new);
     combine(zero_, h, error_weights_, slopes_.size(), error);
     const double gamma = tableau_.A(tableau_.stages - 1, tableau_.stages - 1);
-    return gamma == 0.0 ? Status{} : stages_->filter(t, y, h * gamma, error);
+    return gamma == 0.0 ? Status{} : stages_->filter(h * gamma, error);
   }
 
   void accept() override {

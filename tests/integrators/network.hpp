@@ -7,6 +7,7 @@
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/rosenbrock.hpp"
 #include "integrators/symplectic_euler.hpp"
 #include "integrators/velocity_verlet.hpp"
 #include "integrators/verlet.hpp"
@@ -14,6 +15,7 @@
 #include "mechanics/random_model.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "schemes/rosenbrock_tableaus.hpp"
 
 namespace fw::integrators {
 
@@ -82,6 +84,9 @@ inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   list.push_back(make_velocity_verlet());
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
+  for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
+    list.push_back(make_rosenbrock(tableau));
   }
   for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
                     linalg::LinearSolverKind::sparse_lu}) {
