@@ -45,6 +45,11 @@ StepMatrix::StepMatrix(const SecondOrderSystem& system, const ForceSplitting* sp
 
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v, double h,
                                          TangentModel model) {
+  return assemble(t, q, v, {.damping = -h, .stiffness = -h * h}, model);
+}
+
+const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v,
+                                         const MatrixFactors& factors, TangentModel model) {
   if (splitting_ != nullptr) {
     if (model != TangentModel::exact) throw std::logic_error("the stiff tangent is available as \"exact\" only");
     splitting_->stiff_stiffness(t, q, v, stiffness_);
@@ -53,9 +58,9 @@ const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVector
     system_.stiffness(t, q, v, model, stiffness_);
     system_.damping(t, q, v, damping_);
   }
-  matrix_.coeffs() = -h * damping_.coeffs() - (h * h) * stiffness_.coeffs();
+  matrix_.coeffs() = factors.damping * damping_.coeffs() + factors.stiffness * stiffness_.coeffs();
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-    matrix_.valuePtr()[diagonal_[i]] += system_.mass()[static_cast<Index>(i)];
+    matrix_.valuePtr()[diagonal_[i]] += factors.mass * system_.mass()[static_cast<Index>(i)];
   }
   return matrix_;
 }

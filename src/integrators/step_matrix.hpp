@@ -7,6 +7,13 @@ namespace fw::integrators {
 /// Adds `value` to every diagonal entry of a compressed matrix whose pattern has a full diagonal.
 void add_to_diagonal(SparseMatrix& matrix, double value);
 
+/// The factors of a combination of mass, damping and stiffness.
+struct MatrixFactors {
+  double mass = 1.0;
+  double damping = 0.0;
+  double stiffness = 0.0;
+};
+
 /// The matrix A = M − h D − h² K of an implicit step on a second-order system [Zachmann 2011, S26, extended
 /// by D]. Its pattern is made once.
 class StepMatrix {
@@ -18,9 +25,13 @@ class StepMatrix {
   /// A at (t, q, v), with the tangent stiffness of `model`.
   const SparseMatrix& assemble(double t, ConstVectorRef q, ConstVectorRef v, double h, TangentModel model);
 
-  /// The same restricted to the moving degrees of freedom and made symmetric, ½(A + Aᵀ): rows and columns of
-  /// fixed ones hold their mass on the diagonal only. It differs from A by the skew part of the dampers'
-  /// position derivative, of size O(h²). For solvers that need a symmetric matrix.
+  /// The combination of M, D and K with other factors.
+  const SparseMatrix& assemble(double t, ConstVectorRef q, ConstVectorRef v, const MatrixFactors& factors,
+                               TangentModel model);
+
+  /// M − h D − h² K restricted to the moving degrees of freedom and made symmetric, ½(A + Aᵀ): rows and
+  /// columns of fixed ones hold their mass on the diagonal only. It differs from A by the skew part of the
+  /// dampers' position derivative, of size O(h²). For solvers that need a symmetric matrix.
   const SparseMatrix& assemble_symmetric(double t, ConstVectorRef q, ConstVectorRef v, double h,
                                          TangentModel model);
 

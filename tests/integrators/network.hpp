@@ -1,21 +1,25 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/nystrom.hpp"
 #include "integrators/rosenbrock.hpp"
-#include "integrators/symplectic_euler.hpp"
-#include "integrators/velocity_verlet.hpp"
+#include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/random_model.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "schemes/nystrom_tableaus.hpp"
 #include "schemes/rosenbrock_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
 
 namespace fw::integrators {
 
@@ -64,8 +68,23 @@ inline Ivp random_network(std::uint64_t seed, const NetworkOptions& options, dou
   return ivp;
 }
 
-inline const std::vector<schemes::ButcherTableau>& tableaus() {
-  return schemes::explicit_tableaus();
+/// The entry of that name in a family of schemes given by data.
+template <class Scheme>
+const Scheme& named(const std::vector<Scheme>& family, const std::string& name) {
+  const auto found =
+      std::find_if(family.begin(), family.end(), [&](const Scheme& scheme) { return scheme.name == name; });
+  if (found == family.end()) throw std::logic_error("no scheme \"" + name + "\"");
+  return *found;
+}
+
+inline std::unique_ptr<Integrator> explicit_runge_kutta(const std::string& name) {
+  return make_explicit_runge_kutta(named(schemes::explicit_tableaus(), name));
+}
+inline std::unique_ptr<Integrator> splitting(const std::string& name) {
+  return make_splitting(named(schemes::splitting_schemes(), name));
+}
+inline std::unique_ptr<Integrator> nystrom(const std::string& name) {
+  return make_nystrom(named(schemes::nystrom_tableaus(), name));
 }
 
 /// The first entry of the list, implicit Euler.
@@ -73,15 +92,18 @@ inline std::unique_ptr<Integrator> make_implicit_euler() {
   return make_diagonally_implicit_runge_kutta(schemes::diagonally_implicit_tableaus().front());
 }
 
-/// Every hand-written fixed-step scheme.
+/// Hand-written schemes that take constant steps and any force.
 inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   std::vector<std::unique_ptr<Integrator>> list;
-  for (const schemes::ButcherTableau& tableau : tableaus())
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
     list.push_back(make_explicit_runge_kutta(tableau));
-  list.push_back(make_symplectic_euler());
+  }
+  list.push_back(nystrom("nystrom4_general"));
+  for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
+    list.push_back(make_splitting(scheme));
+  }
   list.push_back(make_verlet(VerletVelocity::central));
   list.push_back(make_verlet(VerletVelocity::backward));
-  list.push_back(make_velocity_verlet());
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(make_diagonally_implicit_runge_kutta(tableau));
   }

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "ode/integrator.hpp"
+
+namespace fw::integrators {
+
+struct HhtAlphaOptions {
+  double alpha = -0.1;  ///< in [−1/3, 0] as in the original paper; 0: no numerical damping
+};
+
+/// The scheme of Hilber, Hughes and Taylor, M a' = (1 + α) f(t + h, q', v') − α f(t, q, v) with γ = ½ − α and
+/// β = ¼ (1 − α)²: order 2 with damping of high frequencies [Hilber, Hughes, Taylor 1977]. See
+/// `AlphaParameters` with α_f = −α, α_m = 0. Throws InputError unless −1/3 ≤ α ≤ 0.
+std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options = {});
+
+}  // namespace fw::integrators

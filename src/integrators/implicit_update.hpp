@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "core/status.hpp"
+#include "core/work.hpp"
+#include "ode/ode_system.hpp"
+
+namespace fw::integrators {
+
+/// Solves y' = w + c f(t, y') for y', the equation of every implicit scheme with one unknown stage. Newton's
+/// iteration to convergence with KLU; a second-order system is reduced to its accelerations (see
+/// `ImplicitAcceleration`).
+class ImplicitUpdate {
+ public:
+  virtual ~ImplicitUpdate() = default;
+
+  /// `y` holds the initial guess and receives y'; `slope` receives (y' − w)/c, which is f(t, y') to Newton's
+  /// tolerance. Fails with Newton's Status.
+  virtual Status solve(double t, double c, ConstVectorRef w, VectorRef y, VectorRef slope) = 0;
+};
+
+std::unique_ptr<ImplicitUpdate> make_implicit_update(const OdeSystem& system, Work& work);
+
+}  // namespace fw::integrators

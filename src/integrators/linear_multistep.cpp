@@ -1,0 +1,116 @@
+#include "integrators/linear_multistep.hpp"
+
+#include <stdexcept>
+#include <vector>
+
+#include "integrators/implicit_update.hpp"
+#include "integrators/starting_steps.hpp"
+#include "integrators/stepper.hpp"
+#include "schemes/multistep_properties.hpp"
+
+namespace fw::integrators {
+
+namespace {
+
+struct Formula {
+  std::vector<double> alpha{}, beta{};
+  int order = 0;
+
+  std::size_t steps() const { return alpha.size() - 1; }
+  bool is_explicit() const { return beta.back() == 0.0; }
+};
+
+/// The last k vectors of a run, [0] the oldest of them.
+class History {
+ public:
+  History(std::size_t length, Index size) : values_(length, Vector(size)) {}
+
+  void push(ConstVectorRef value) {
+    values_[first_] = value;
+    first_ = (first_ + 1) % values_.size();
+    ++count_;
+  }
+  bool full() const { return count_ >= values_.size(); }
+  const Vector& operator[](std::size_t j) const { return values_[(first_ + j) % values_.size()]; }
+
+ private:
+  std::vector<Vector> values_;
+  std::size_t first_ = 0, count_ = 0;
+};
+
+class LinearMultistepStepper final : public Stepper {
+ public:
+  LinearMultistepStepper(const Formula& formula, const Ivp& ivp, Work& work)
+      : formula_(formula),
+        system_(*ivp.system),
+        work_(work),
+        states_(formula.steps(), ivp.y0.size()),
+        slopes_(formula.steps(), ivp.y0.size()),
+        base_(ivp.y0.size()),
+        slope_(ivp.y0.size()) {
+    if (!formula.is_explicit()) update_ = make_implicit_update(system_, work);
+    if (formula.steps() > 1) {
+      start_ = formula.is_explicit() ? make_explicit_starting_steps(ivp, formula.order, work)
+                                     : make_implicit_starting_steps(ivp, formula.order, work);
+    }
+  }
+
+  Status step(double t, double h, VectorRef y) override {
+    // f_n: of an implicit formula it is known from the step before.
+    if (formula_.is_explicit() || !slope_is_known_) {
+      system_.rhs(t, y, slope_);
+      ++work_.rhs_evaluations;
+    }
+    states_.push(y);
+    slopes_.push(slope_);
+    if (!states_.full()) return start_->step(t, h, y);
+
+    const std::size_t k = formula_.steps();
+    base_.setZero();
+    for (std::size_t j = 0; j < k; ++j) {
+      if (formula_.alpha[j] != 0.0) base_ -= formula_.alpha[j] * states_[j];
+      if (formula_.beta[j] != 0.0) base_ += (h * formula_.beta[j]) * slopes_[j];
+    }
+    if (formula_.is_explicit()) {
+      y = base_;
+      return {};
+    }
+    y += h * slope_;
+    slope_is_known_ = true;
+    return update_->solve(t + h, h * formula_.beta[k], base_, y, slope_);
+  }
+
+ private:
+  const Formula formula_;
+  const OdeSystem& system_;
+  Work& work_;
+  History states_, slopes_;
+  Vector base_, slope_;
+  bool slope_is_known_ = false;
+  std::unique_ptr<ImplicitUpdate> update_;
+  std::unique_ptr<Stepper> start_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_linear_multistep(const schemes::MultistepFormula& formula) {
+  Formula numbers{.order = schemes::order_of_accuracy(formula)};
+  for (const schemes::Coefficient& alpha : formula.alpha) numbers.alpha.push_back(schemes::as<double>(alpha));
+  for (const schemes::Coefficient& beta : formula.beta) numbers.beta.push_back(schemes::as<double>(beta));
+  MethodInfo info{.name = formula.name,
+                  .title = formula.title,
+                  .family = "linear multistep",
+                  .order = numbers.order,
+                  .order_with_velocity_forces = numbers.order,
+                  .stages = 1,
+                  .is_explicit = numbers.is_explicit(),
+                  .is_multistep = numbers.steps() > 1,
+                  .formula = "sum_j alpha_j y_{n+j} = h sum_j beta_j f(t_{n+j}, y_{n+j})",
+                  .reference = formula.reference};
+  return std::make_unique<FixedStepIntegrator>(
+      std::move(info), [numbers](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
+        return std::make_unique<LinearMultistepStepper>(numbers, ivp, work);
+      });
+}
+
+}  // namespace fw::integrators
