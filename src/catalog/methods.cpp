@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/fully_implicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
 #include "integrators/rosenbrock.hpp"
@@ -145,6 +146,13 @@ std::vector<MethodEntry> make_list() {
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
           return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
         }));
+  }
+  for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
+    list.push_back(
+        {integrators::make_fully_implicit_runge_kutta(tableau)->info(),
+         {},
+         tableau,
+         [&tableau](const MethodOptions&) { return integrators::make_fully_implicit_runge_kutta(tableau); }});
   }
   for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_rosenbrock));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "integrators/adaptive_integrator.hpp"
+#include "integrators/extended_runge_kutta.hpp"
 #include "integrators/linear_combination.hpp"
 #include "integrators/stepper.hpp"
 #include "integrators/tableau_info.hpp"
@@ -135,11 +136,13 @@ std::unique_ptr<Integrator> make_diagonally_implicit_runge_kutta(const ButcherTa
   if (tableau.b_embedded.empty()) {
     return std::make_unique<FixedStepIntegrator>(
         std::move(info),
-        [make](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> { return make(ivp, work); });
+        [make](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> { return make(ivp, work); },
+        make_extended_runge_kutta(tableau));
   }
   return std::make_unique<AdaptiveIntegrator>(
       std::move(info), controller,
-      [make](const Ivp& ivp, Work& work) -> std::unique_ptr<AdaptiveStepper> { return make(ivp, work); });
+      [make](const Ivp& ivp, Work& work) -> std::unique_ptr<AdaptiveStepper> { return make(ivp, work); },
+      make_extended_runge_kutta(tableau));
 }
 
 }  // namespace fw::integrators

@@ -8,6 +8,7 @@
 
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/fully_implicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
 #include "integrators/rosenbrock.hpp"
@@ -106,6 +107,9 @@ inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   list.push_back(make_verlet(VerletVelocity::backward));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
+  for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
+    list.push_back(make_fully_implicit_runge_kutta(tableau));
   }
   for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
     list.push_back(make_rosenbrock(tableau));

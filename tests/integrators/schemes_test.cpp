@@ -51,8 +51,9 @@ TEST(Rk4, IntegratesCubicsExactly) {
   ivp.y0 = Vector{{0.25}};
   ivp.t1 = 1.0;
   const auto is_rk4 = [](const schemes::ButcherTableau& tableau) { return tableau.name == "rk4"; };
-  const auto rk4 = std::find_if(tableaus().begin(), tableaus().end(), is_rk4);
-  ASSERT_NE(rk4, tableaus().end());
+  const auto rk4 =
+      std::find_if(schemes::explicit_tableaus().begin(), schemes::explicit_tableaus().end(), is_rk4);
+  ASSERT_NE(rk4, schemes::explicit_tableaus().end());
   const Solution solution = run(*make_explicit_runge_kutta(*rk4), ivp, 1.0);
   EXPECT_NEAR(solution.state[0], 1.25, 1e-15);
   EXPECT_EQ(solution.work.rhs_evaluations, 4u);
@@ -278,7 +279,7 @@ TEST(Schemes, CountTheirForces) {
   EXPECT_EQ(forces(*splitting("velocity_verlet")), 101u);
   EXPECT_EQ(forces(*make_verlet(VerletVelocity::central)), 101u);
   EXPECT_EQ(forces(*make_verlet(VerletVelocity::backward)), 101u);
-  for (const schemes::ButcherTableau& tableau : tableaus()) {
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
     const auto scheme = make_explicit_runge_kutta(tableau);
     const int stages =
         scheme->info().stages;  // without the first of a step that was the last of the one before
