@@ -7,6 +7,7 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/additive_runge_kutta.hpp"
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/fully_implicit_runge_kutta.hpp"
@@ -16,6 +17,7 @@
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
+#include "schemes/additive_tableaus.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
 #include "schemes/nystrom_tableaus.hpp"
@@ -156,6 +158,12 @@ std::vector<MethodEntry> make_list() {
   }
   for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_rosenbrock));
+  }
+  for (const schemes::AdditiveTableau& tableau : schemes::additive_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_additive_runge_kutta(data, {}, controller);
+        }));
   }
   list.push_back(linearised_implicit_euler());
   list.push_back(cvode_bdf());
