@@ -7,18 +7,23 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/additive_runge_kutta.hpp"
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/fully_implicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
+#include "integrators/rosenbrock.hpp"
 #include "integrators/runge_kutta_chebyshev.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
+#include "schemes/additive_tableaus.hpp"
 #include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
 #include "schemes/nystrom_tableaus.hpp"
+#include "schemes/rosenbrock_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
 
 namespace fw::catalog {
@@ -178,6 +183,22 @@ std::vector<MethodEntry> make_list() {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
           return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
+        }));
+  }
+  for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
+    list.push_back(
+        {integrators::make_fully_implicit_runge_kutta(tableau)->info(),
+         {},
+         tableau,
+         [&tableau](const MethodOptions&) { return integrators::make_fully_implicit_runge_kutta(tableau); }});
+  }
+  for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
+    list.push_back(with_controller(tableau, integrators::make_rosenbrock));
+  }
+  for (const schemes::AdditiveTableau& tableau : schemes::additive_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_additive_runge_kutta(data, {}, controller);
         }));
   }
   list.push_back(linearised_implicit_euler());
