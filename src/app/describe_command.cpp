@@ -10,8 +10,8 @@
 #include "catalog/study_kinds.hpp"
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
-#include "integrators/tableaus.hpp"
 #include "scene/generators.hpp"
+#include "schemes/property_list.hpp"
 #include "store/json_writer.hpp"
 
 namespace fw::app {
@@ -19,25 +19,6 @@ namespace fw::app {
 namespace {
 
 using store::JsonWriter;
-
-const integrators::ButcherTableau* find_tableau(const std::string& name) {
-  for (const integrators::ButcherTableau& tableau : integrators::tableaus()) {
-    if (tableau.name == name) return &tableau;
-  }
-  return nullptr;
-}
-
-std::string tableau_text(const integrators::ButcherTableau& tableau) {
-  std::string text = "\nButcher tableau (c | A, last row b)\n";
-  for (Index i = 0; i < tableau.b.size(); ++i) {
-    text += fmt::format("  {:>10.6g} |", tableau.c[i]);
-    for (Index j = 0; j < tableau.b.size(); ++j) text += fmt::format(" {:>10.6g}", tableau.A(i, j));
-    text += '\n';
-  }
-  text += fmt::format("  {:>10} |", "");
-  for (double weight : tableau.b) text += fmt::format(" {:>10.6g}", weight);
-  return text + '\n';
-}
 
 std::string describe_method(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info;
@@ -52,7 +33,8 @@ std::string describe_method(const catalog::MethodEntry& entry) {
        info.order_with_velocity_forces == 0 ? "variable" : std::to_string(info.order_with_velocity_forces));
   line("stages", std::to_string(info.stages));
   line("kind", info.is_explicit ? "explicit" : "implicit");
-  line("step", info.is_adaptive    ? "adaptive (--rtol, --atol)"
+  line("step", info.is_adaptive && info.has_fixed_step ? "fixed (--step) or adaptive (--rtol, --atol)"
+               : info.is_adaptive  ? "adaptive (--rtol, --atol)"
                : info.is_multistep ? "fixed, the interval has to be a whole number of steps"
                                    : "fixed (--step)");
   line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");
@@ -60,7 +42,10 @@ std::string describe_method(const catalog::MethodEntry& entry) {
                            : info.is_l_stable ? "A-stable, L-stable"
                            : info.is_a_stable ? "A-stable"
                                               : "conditional");
-  line("works on", info.needs_second_order ? "M q'' = f(t, q, q')" : "y' = f(t, y)");
+  line("works on", info.needs_springs           ? "mass-spring systems"
+                   : info.needs_position_forces ? "M q'' = f(t, q)"
+                   : info.needs_second_order    ? "M q'' = f(t, q, q')"
+                                                : "y' = f(t, y)");
   line("literature", info.reference);
   if (!entry.options.empty()) {
     text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name,
@@ -69,7 +54,12 @@ std::string describe_method(const catalog::MethodEntry& entry) {
       text += fmt::format("  {:<24} {} (default {})\n", option.name, option.expected, option.default_value);
     }
   }
-  if (const auto* tableau = find_tableau(info.name)) text += tableau_text(*tableau);
+  const std::vector<schemes::NamedProperty> derived = schemes::property_list(schemes::derive(entry.data));
+  if (!derived.empty()) {
+    text += "\nDerived from the coefficients\n";
+    for (const schemes::NamedProperty& property : derived) line(property.label.c_str(), to_text(property));
+    text += '\n' + schemes::coefficients_text(entry.data);
+  }
   return text;
 }
 
@@ -96,6 +86,31 @@ std::string describe_problem(const ProblemEntry& entry) {
   return text;
 }
 
+void write_row(JsonWriter& json, const schemes::CoefficientRow& row, std::size_t size) {
+  json.begin_array();
+  for (std::size_t j = 0; j < size; ++j) {
+    json.value(j < row.size() ? schemes::as<double>(row[j]) : 0.0);
+  }
+  json.end_array();
+}
+
+void write_tableau(JsonWriter& json, const schemes::SchemeData& data) {
+  const auto* tableau = std::get_if<schemes::ButcherTableau>(&data);
+  if (tableau == nullptr) return;
+  const std::size_t s = tableau->b.size();
+  json.key("tableau").begin_object().key("A").begin_array();
+  for (const schemes::CoefficientRow& row : tableau->A) write_row(json, row, s);
+  json.end_array().key("b");
+  write_row(json, tableau->b, s);
+  if (!tableau->b_embedded.empty()) {
+    json.key("b_embedded");
+    write_row(json, tableau->b_embedded, s);
+  }
+  json.key("c").begin_array();
+  for (const double c : schemes::values<double>(*tableau).c) json.value(c);
+  json.end_array().end_object();
+}
+
 std::string method_json(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info;
   JsonWriter json;
@@ -114,20 +129,13 @@ std::string method_json(const catalog::MethodEntry& entry) {
     json.key("expected").value(option.expected).end_object();
   }
   json.end_array();
-  if (const auto* tableau = find_tableau(info.name)) {
-    const auto row = [&](const auto& values) {
-      json.begin_array();
-      for (Index i = 0; i < values.size(); ++i) json.value(values[i]);
-      json.end_array();
-    };
-    json.key("tableau").begin_object().key("A").begin_array();
-    for (Index i = 0; i < tableau->A.rows(); ++i) row(Vector(tableau->A.row(i)));
-    json.end_array().key("b");
-    row(tableau->b);
-    json.key("c");
-    row(tableau->c);
-    json.end_object();
+  json.key("derived").begin_object();
+  for (const schemes::NamedProperty& property : schemes::property_list(schemes::derive(entry.data))) {
+    json.key(property.key);
+    std::visit([&](const auto& value) { json.value(value); }, property.value);
   }
+  json.end_object();
+  write_tableau(json, entry.data);
   json.end_object();
   return json.text() + "\n";
 }

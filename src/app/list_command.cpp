@@ -61,7 +61,7 @@ std::string methods_table(bool only_oracles) {
     order.push_back(order_text(info));
     stages.push_back(std::to_string(info.stages));
     kind.push_back(info.is_explicit ? "explicit" : "implicit");
-    steps.push_back(info.is_adaptive ? "adaptive" : "fixed");
+    steps.push_back(!info.is_adaptive ? "fixed" : info.has_fixed_step ? "both" : "adaptive");
     symplectic.push_back(yes_or_blank(info.is_symplectic));
     stable.push_back(info.is_l_stable ? "L" : info.is_a_stable ? "A" : "");
     title.push_back(info.title);

@@ -58,14 +58,18 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
   const bool has_tolerances = arguments.has_relative || arguments.has_absolute;
   if (arguments.has_step && has_tolerances)
     throw InputError("found --step and tolerances, expected either --step or --rtol and --atol");
-  if (info.is_adaptive) {
-    if (arguments.has_step) {
-      throw InputError(
-          fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
-    }
+  if (arguments.has_step && !info.has_fixed_step) {
+    throw InputError(
+        fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
+  }
+  if (has_tolerances && !info.is_adaptive) {
+    throw InputError(
+        fmt::format("tolerances: method \"{}\" has a fixed step, expected --step", info.name));
+  }
+  if (info.is_adaptive && !arguments.has_step) {
     if (!arguments.has_relative || !arguments.has_absolute) {
-      throw InputError(
-          fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol", info.name));
+      throw InputError(fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol{}", info.name,
+                                   info.has_fixed_step ? ", or --step for a constant step" : ""));
     }
     const auto check = [](const char* option, double value) {
       if (!std::isfinite(value) || value <= 0.0) {

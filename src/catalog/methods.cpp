@@ -7,14 +7,17 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
-#include "integrators/symplectic_euler.hpp"
-#include "integrators/velocity_verlet.hpp"
+#include "integrators/nystrom.hpp"
+#include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "schemes/explicit_tableaus.hpp"
+#include "schemes/nystrom_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::catalog {
 
@@ -22,7 +25,7 @@ namespace {
 
 /// A method without options.
 MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
-  return {make()->info(), {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+  return {make()->info(), {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
 }
 
 /// The value of an option out of a list of names.
@@ -73,12 +76,13 @@ integrators::ControllerOptions read_controller(const MethodOptions& options) {
   return chosen;
 }
 
-/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the list.
+/// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the
+/// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
   MethodInfo info = make(data, integrators::ControllerOptions{})->info();
   const bool adaptive = info.is_adaptive;
-  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{},
+  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{}, data,
           [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
 }
 
@@ -89,6 +93,7 @@ MethodEntry linearised_implicit_euler() {
           {{"linear_solver", "cg", "cg (conjugate gradients), cholesky or lu"},
            {"linear_tolerance", "1e-10", "relative residual of cg"},
            {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
+          {},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
             chosen.linear_solver.kind =
@@ -111,6 +116,7 @@ MethodEntry cvode_bdf() {
   return {oracles::make_cvode_bdf()->info(),
           {{"tolerance_factor", fmt::format("{}", defaults.tolerance_factor),
             "CVODE's own tolerances as a fraction of those given"}},
+          {},
           [defaults](const MethodOptions& options) {
             return oracles::make_cvode_bdf({.tolerance_factor = positive_number(options, "tolerance_factor",
                                                                                 defaults.tolerance_factor)});
@@ -122,11 +128,22 @@ std::vector<MethodEntry> make_list() {
   for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_explicit_runge_kutta));
   }
-  list.push_back(plain(integrators::make_symplectic_euler));
+  for (const schemes::NystromTableau& tableau : schemes::nystrom_tableaus()) {
+    list.push_back(with_controller(tableau, integrators::make_nystrom));
+  }
+  for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
+    list.push_back({integrators::make_splitting(scheme)->info(), {}, scheme, [&scheme](const MethodOptions&) {
+                      return integrators::make_splitting(scheme);
+                    }});
+  }
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
-  list.push_back(plain(integrators::make_velocity_verlet));
-  list.push_back(plain(integrators::make_implicit_euler));
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
+        }));
+  }
   list.push_back(linearised_implicit_euler());
   list.push_back(cvode_bdf());
   return list;

@@ -6,6 +6,7 @@
 
 #include "catalog/method_call.hpp"
 #include "ode/integrator.hpp"
+#include "schemes/scheme_data.hpp"
 
 namespace fw::catalog {
 
@@ -13,6 +14,7 @@ namespace fw::catalog {
 struct MethodEntry {
   MethodInfo info;
   std::vector<OptionInfo> options;
+  schemes::SchemeData data;  ///< the coefficients that define it, if it is defined so
   /// Makes the integrator. Throws InputError for a bad option value; unknown options are checked before.
   std::function<std::unique_ptr<Integrator>(const MethodOptions&)> make;
 };

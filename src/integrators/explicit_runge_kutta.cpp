@@ -8,7 +8,7 @@
 #include "integrators/linear_combination.hpp"
 #include "integrators/stepper.hpp"
 #include "integrators/tableau_info.hpp"
-#include "schemes/order_conditions.hpp"
+#include "schemes/derived_properties.hpp"
 
 namespace fw::integrators {
 
@@ -16,16 +16,6 @@ namespace {
 
 using schemes::ButcherTableau;
 using schemes::TableauValues;
-
-/// Whether the last stage is the solution itself, so that its slope is the first of the next step.
-bool is_first_same_as_last(const TableauValues<Float128>& tableau) {
-  const int s = tableau.stages;
-  if (s < 2 || tableau.b.back() != 0) return false;
-  for (int j = 0; j < s; ++j) {
-    if (tableau.A(s - 1, j) != tableau.b[static_cast<std::size_t>(j)]) return false;
-  }
-  return true;
-}
 
 class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
  public:
@@ -175,7 +165,7 @@ std::unique_ptr<Integrator> make_explicit_runge_kutta(const ButcherTableau& tabl
   }
   const TableauValues<Float128> exact = schemes::values<Float128>(tableau);
   const TableauValues<double> rounded = schemes::values<double>(tableau);
-  const bool first_same_as_last = is_first_same_as_last(exact);
+  const bool first_same_as_last = schemes::is_first_same_as_last(tableau);
   MethodInfo info = tableau_info(tableau, "explicit Runge-Kutta");
   info.stages = tableau.stages() - (first_same_as_last ? 1 : 0);
   info.formula = "k_i = f(t + c_i h, y + h sum_j a_ij k_j);  y' = y + h sum_i b_i k_i";

@@ -26,8 +26,12 @@ void add_to_diagonal(SparseMatrix& matrix, double value) {
   }
 }
 
-StepMatrix::StepMatrix(const SecondOrderSystem& system)
-    : system_(system), stiffness_(system.tangent_pattern()), damping_(stiffness_), matrix_(stiffness_) {
+StepMatrix::StepMatrix(const SecondOrderSystem& system) : StepMatrix(system, nullptr) {}
+
+StepMatrix::StepMatrix(const SecondOrderSystem& system, const ForceSplitting* splitting)
+    : system_(system),
+      splitting_(splitting),
+      stiffness_(system.tangent_pattern()), damping_(stiffness_), matrix_(stiffness_) {
   const int n = static_cast<int>(matrix_.cols());
   diagonal_.resize(static_cast<std::size_t>(n));
   transpose_.resize(static_cast<std::size_t>(matrix_.nonZeros()));
@@ -46,8 +50,14 @@ const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVector
 
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v,
                                          const MatrixFactors& factors, TangentModel model) {
-  system_.stiffness(t, q, v, model, stiffness_);
-  system_.damping(t, q, v, damping_);
+  if (splitting_ != nullptr) {
+    if (model != TangentModel::exact) throw std::logic_error("the stiff tangent is available as \"exact\" only");
+    splitting_->stiff_stiffness(t, q, v, stiffness_);
+    splitting_->stiff_damping(t, q, v, damping_);
+  } else {
+    system_.stiffness(t, q, v, model, stiffness_);
+    system_.damping(t, q, v, damping_);
+  }
   matrix_.coeffs() = factors.damping * damping_.coeffs() + factors.stiffness * stiffness_.coeffs();
   for (std::size_t i = 0; i < diagonal_.size(); ++i) {
     matrix_.valuePtr()[diagonal_[i]] += factors.mass * system_.mass()[static_cast<Index>(i)];

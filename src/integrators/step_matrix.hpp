@@ -19,6 +19,8 @@ struct MatrixFactors {
 class StepMatrix {
  public:
   explicit StepMatrix(const SecondOrderSystem& system);
+  /// The same with the derivatives of the stiff forces only. `assemble` then takes the exact model only.
+  StepMatrix(const SecondOrderSystem& system, const ForceSplitting* splitting);
 
   /// A at (t, q, v), with the tangent stiffness of `model`.
   const SparseMatrix& assemble(double t, ConstVectorRef q, ConstVectorRef v, double h, TangentModel model);
@@ -35,6 +37,7 @@ class StepMatrix {
 
  private:
   const SecondOrderSystem& system_;
+  const ForceSplitting* splitting_;  ///< null: the whole force
   SparseMatrix stiffness_, damping_, matrix_;
   std::vector<int> diagonal_;   ///< position of each diagonal entry in the value array
   std::vector<int> transpose_;  ///< position of (j, i) for the entry (i, j)

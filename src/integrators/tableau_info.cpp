@@ -1,6 +1,8 @@
 #include "integrators/tableau_info.hpp"
 
+#include "schemes/derived_properties.hpp"
 #include "schemes/order_conditions.hpp"
+#include "schemes/stability_function.hpp"
 
 namespace fw::integrators {
 
@@ -11,6 +13,10 @@ MethodInfo tableau_info(const schemes::ButcherTableau& tableau, const std::strin
   info.embedded_order = schemes::embedded_order(tableau);
   info.is_adaptive = !tableau.b_embedded.empty();
   info.stages = tableau.stages();
+  info.is_symplectic = schemes::is_symplectic(tableau);
+  const schemes::LinearStability stability = linear_stability(stability_function(tableau));
+  info.is_a_stable = stability.is_a_stable;
+  info.is_l_stable = stability.is_l_stable;
   info.is_explicit = schemes::shape(tableau) == schemes::TableauShape::explicit_stages;
   return info;
 }

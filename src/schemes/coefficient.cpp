@@ -166,6 +166,13 @@ Coefficient::Coefficient(const std::string& text) : text_(text) {
 
 Coefficient::Coefficient(const Float128& value) : text_(value.str(33)), value_(value) {}
 
+Coefficient Coefficient::approximation(const std::string& text, double uncertainty) {
+  Coefficient result(text);
+  result.rational_.reset();
+  result.uncertainty_ = uncertainty;
+  return result;
+}
+
 template <>
 double as<double>(const Coefficient& coefficient) {
   return static_cast<double>(coefficient.value());

@@ -25,6 +25,9 @@ class Coefficient {
   Coefficient(const std::string& text);
   /// A number that a formula has computed in binary128.
   Coefficient(const Float128& value);
+  /// An expression that stands for an irrational number near it, such as a quotient of long integers that a source
+  /// prints in place of decimals; `uncertainty` bounds |value − what is meant|.
+  static Coefficient approximation(const std::string& text, double uncertainty);
 
   const std::string& text() const { return text_; }
   const Float128& value() const { return value_; }

@@ -95,9 +95,8 @@ class ConvergenceCase {
         context_(context) {}
 
   CaseResult run() {
-    if (integrator_.info().needs_second_order && !is_second_order()) {
-      return conclude(Verdict::not_applicable,
-                      "the method needs M q'' = f(t, q, q'), the problem is y' = f(t, y)");
+    if (const std::string why = why_not_applicable(integrator_.info(), *ivp().system); !why.empty()) {
+      return conclude(Verdict::not_applicable, why);
     }
     if (!find_reference()) return conclude(Verdict::not_applicable, reference_.status.describe());
     std::optional<std::int64_t> coarsest = find_coarsest();
@@ -362,7 +361,7 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
-      if (integrator->info().is_adaptive) {
+      if (!integrator->info().has_fixed_step) {
         spec.fail("methods", {i},
                   fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
       }

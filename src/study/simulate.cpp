@@ -193,12 +193,10 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
-      const bool lacks_structure =
-          integrator->info().needs_second_order && problem->problem.ivp.system->second_order() == nullptr;
-      if (lacks_structure) {
-        spec.fail("methods", {i},
-                  fmt::format("\"{}\" needs M q'' = f(t, q, q'), which problem \"{}\" is not", call,
-                              problem->label));
+      if (const std::string why =
+              why_not_applicable(integrator->info(), *problem->problem.ivp.system);
+          !why.empty()) {
+        spec.fail("methods", {i}, fmt::format("\"{}\" (problem \"{}\"): {}", call, problem->label, why));
       }
       const auto add = [&](const StepControl& control, const std::string& suffix,
                            const std::string& identity) {
@@ -209,7 +207,9 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
                                 return run_trajectory(*problem, call, *integrator, control, frames, context);
                               }});
       };
-      if (integrator->info().is_adaptive) {
+      const bool by_tolerances =
+          integrator->info().is_adaptive && (steps.empty() || !integrator->info().has_fixed_step);
+      if (by_tolerances) {
         add(adaptive, "",
             fmt::format("relative = {}\nabsolute = {}\n", adaptive.relative_tolerance,
                         adaptive.absolute_tolerance));

@@ -1,18 +1,23 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
-#include "integrators/symplectic_euler.hpp"
-#include "integrators/tableaus.hpp"
-#include "integrators/velocity_verlet.hpp"
+#include "integrators/nystrom.hpp"
+#include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/random_model.hpp"
+#include "schemes/explicit_tableaus.hpp"
+#include "schemes/nystrom_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
+#include "schemes/implicit_tableaus.hpp"
 
 namespace fw::integrators {
 
@@ -61,15 +66,45 @@ inline Ivp random_network(std::uint64_t seed, const NetworkOptions& options, dou
   return ivp;
 }
 
-/// Every hand-written fixed-step scheme.
+/// The entry of that name in a family of schemes given by data.
+template <class Scheme>
+const Scheme& named(const std::vector<Scheme>& family, const std::string& name) {
+  const auto found =
+      std::find_if(family.begin(), family.end(), [&](const Scheme& scheme) { return scheme.name == name; });
+  if (found == family.end()) throw std::logic_error("no scheme \"" + name + "\"");
+  return *found;
+}
+
+inline std::unique_ptr<Integrator> explicit_runge_kutta(const std::string& name) {
+  return make_explicit_runge_kutta(named(schemes::explicit_tableaus(), name));
+}
+inline std::unique_ptr<Integrator> splitting(const std::string& name) {
+  return make_splitting(named(schemes::splitting_schemes(), name));
+}
+inline std::unique_ptr<Integrator> nystrom(const std::string& name) {
+  return make_nystrom(named(schemes::nystrom_tableaus(), name));
+}
+
+/// The first entry of the list, implicit Euler.
+inline std::unique_ptr<Integrator> make_implicit_euler() {
+  return make_diagonally_implicit_runge_kutta(schemes::diagonally_implicit_tableaus().front());
+}
+
+/// Hand-written schemes that take constant steps and any force.
 inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   std::vector<std::unique_ptr<Integrator>> list;
-  for (const ButcherTableau& tableau : tableaus()) list.push_back(make_explicit_runge_kutta(tableau));
-  list.push_back(make_symplectic_euler());
+  for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
+    list.push_back(make_explicit_runge_kutta(tableau));
+  }
+  list.push_back(nystrom("nystrom4_general"));
+  for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
+    list.push_back(make_splitting(scheme));
+  }
   list.push_back(make_verlet(VerletVelocity::central));
   list.push_back(make_verlet(VerletVelocity::backward));
-  list.push_back(make_velocity_verlet());
-  list.push_back(make_implicit_euler());
+  for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
+    list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
   for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
                     linalg::LinearSolverKind::sparse_lu}) {
     list.push_back(make_implicit_euler_linearised({.linear_solver = {.kind = kind}}));

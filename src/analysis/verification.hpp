@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ode/integrator.hpp"
+#include "schemes/derived_properties.hpp"
+
+namespace fw::analysis {
+
+enum class Finding {
+  holds,
+  fails,
+  not_applicable,  ///< nothing is claimed, or the property has no meaning for this scheme
+};
+
+/// One property of one scheme: what is claimed (MethodInfo), what follows from the coefficients, what the running
+/// code shows.
+struct PropertyCheck {
+  std::string property{};
+  std::string claimed{};
+  std::string derived{};
+  std::string measured{};
+  Finding finding = Finding::not_applicable;
+  std::string reason{};  ///< what was measured on what, and why it fails
+};
+
+/// A scheme and everything that is said of it.
+struct SchemeUnderTest {
+  const Integrator& integrator;
+  const schemes::SchemeData& data;
+  /// An independent solver that takes tolerances; null: agreement is not checked.
+  const Integrator* oracle = nullptr;
+};
+
+/// Checks every property, in the order of the list below. The functions are pure: the same scheme gives the same
+/// findings.
+std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme);
+
+/// The single parts of `verify`; each appends its findings.
+/// Order for f(t, q), for f(t, q, v) and for ẏ = f(t, y), observed on nonlinear non-autonomous problems with masses
+/// other than 1, positions and velocities apart; in binary128 for orders that double cannot show.
+void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// Orders of the error estimate and of dense output, from single steps against certified solutions.
+void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// Measured error against tolerance over 1e-3 … 1e-10 on three problems.
+void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// R(hJ) from the coefficients against one black-box step, as first-order and as second-order system; for multistep
+/// formulas the recurrence, for splitting and Nyström schemes the matrix of the oscillator.
+void verify_stability_function(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// A- and L-stability and the real and imaginary intervals, by black-box steps on both sides of each limit.
+void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// ẏ = g(t) with polynomials g: exact up to the quadrature order, not beyond.
+void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// Right-hand sides per step of explicit schemes.
+void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// A, b, c recovered from the running code by right-hand sides made for it.
+void verify_tableau(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// The defect of the derivative of the step map from symplecticity.
+void verify_symplecticity(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// n steps, reversed velocities, n steps: the distance from the start in units in the last place.
+void verify_reversibility(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// Linear momentum of a free spring network, energy of symplectic and of energy-conserving schemes.
+void verify_conservation(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// The end state against the oracle's, within both error estimates.
+void verify_agreement(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+
+}  // namespace fw::analysis

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "analysis/order_fit.hpp"
+#include "analysis/verification.hpp"
+#include "analysis/verification_problems.hpp"
+
+namespace fw::analysis {
+
+namespace {
+
+/// |p̂ − p| has to be at most this on smooth problems.
+constexpr double order_window = 0.1;
+constexpr double smallest_correlation = 0.999;
+/// From this order on double rounding leaves too few points between floor and pre-asymptotic range.
+constexpr int extended_from_order = 6;
+
+using ProblemFunction = const Ivp& (*)();
+
+/// The first problem that the scheme can run on; null if there is none.
+ProblemFunction applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems) {
+  for (const ProblemFunction problem : problems) {
+    if (why_not_applicable(info, *problem().system).empty()) return problem;
+  }
+  return nullptr;
+}
+
+/// Relative errors of both halves of the state; equal where the system is not of second order.
+struct Errors {
+  double position, velocity;
+};
+
+Errors errors_of(const OdeSystem& system, const std::vector<Float128>& y, const std::vector<Float128>& exact) {
+  const auto relative = [&](std::size_t begin, std::size_t end) {
+    Float128 error = 0, size = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      error = std::max(error, Float128(abs(y[i] - exact[i])));
+      size = std::max(size, Float128(abs(exact[i])));
+    }
+    return static_cast<double>(error / size);
+  };
+  const std::size_t n = y.size();
+  if (system.second_order() == nullptr) return {relative(0, n), relative(0, n)};
+  return {relative(0, n / 2), relative(n / 2, n)};
+}
+
+/// Runs the scheme over finer and finer steps and fits the order.
+class OrderMeasurement {
+ public:
+  OrderMeasurement(const Integrator& integrator, ProblemFunction problem, int expected)
+      : integrator_(integrator),
+        ivp_(problem()),
+        exact_(certified_end(problem)),
+        extended_(expected >= extended_from_order && integrator.extended_solver()) {}
+
+  void run() {
+    constexpr double ratio = 1.3;
+    const double floor = extended_ ? 1e-17 : 2e-12;
+    const double most_steps = extended_ ? 1500.0 : 30000.0;
+    int at_floor = 0;
+    double last_count = 0.0;
+    for (double count = 4.0; count <= most_steps && at_floor < 2; count *= ratio) {
+      const double whole = std::round(count);
+      if (whole <= last_count) continue;
+      last_count = whole;
+      const std::optional<Errors> errors = solve(static_cast<std::uint64_t>(whole));
+      if (!errors) continue;
+      steps_.push_back((ivp_.t1 - ivp_.t0) / whole);
+      position_.push_back(errors->position);
+      velocity_.push_back(errors->velocity);
+      if (std::max(errors->position, errors->velocity) < floor) ++at_floor;
+      // Low orders never come near the floor: enough points in the asymptotic range end the run.
+      if (errors->position < 1e-4 && errors->velocity < 1e-4 && steps_.size() >= 14 && whole > 1500) break;
+    }
+    position_fit = fit_order(steps_, position_, floor);
+    velocity_fit = fit_order(steps_, velocity_, floor);
+  }
+
+  bool extended() const { return extended_; }
+
+  OrderFit position_fit, velocity_fit;
+  std::string failure;
+
+ private:
+  std::optional<Errors> solve(std::uint64_t count) {
+    if (extended_) {
+      return errors_of(*ivp_.system, integrator_.extended_solver()(ivp_, count), exact_.value);
+    }
+    NullObserver observer;
+    const Solution solution = integrator_.solve(
+        ivp_, FixedStep{.step = (ivp_.t1 - ivp_.t0) / static_cast<double>(count), .allow_short_last_step = false},
+        observer);
+    if (!solution.status.ok()) {
+      failure = solution.status.describe();
+      return std::nullopt;
+    }
+    std::vector<Float128> state(solution.state.begin(), solution.state.end());
+    return errors_of(*ivp_.system, state, exact_.value);
+  }
+
+  const Integrator& integrator_;
+  const Ivp& ivp_;
+  const ReferenceState& exact_;
+  bool extended_;
+  std::vector<double> steps_, position_, velocity_;
+};
+
+PropertyCheck judge(const char* property, int claimed, const std::optional<int>& derived,
+                    const OrderMeasurement& measurement) {
+  PropertyCheck check{.property = property, .claimed = std::to_string(claimed)};
+  if (derived) check.derived = std::to_string(*derived);
+  check.finding = Finding::holds;
+  const auto fail = [&](const std::string& why) {
+    check.finding = Finding::fails;
+    check.reason += (check.reason.empty() ? "" : "; ") + why;
+  };
+  const auto judge_fit = [&](const char* name, const OrderFit& fit) {
+    if (!fit.valid) {
+      fail(fmt::format("{}: {}{}", name, fit.reason,
+                       measurement.failure.empty() ? "" : "; last failure: " + measurement.failure));
+    } else if (std::abs(fit.order - claimed) > order_window || fit.correlation < smallest_correlation) {
+      fail(fmt::format("{}: order {:.3f} [{:.3f}, {:.3f}], r = {:.5f}", name, fit.order, fit.order_low,
+                       fit.order_high, fit.correlation));
+    }
+  };
+  judge_fit("q", measurement.position_fit);
+  judge_fit("v", measurement.velocity_fit);
+  check.measured = fmt::format("{:.3f}, {:.3f}", measurement.position_fit.order, measurement.velocity_fit.order);
+  if (derived && *derived != claimed) fail(fmt::format("derived {}, claimed {}", *derived, claimed));
+  if (measurement.extended()) check.reason += check.reason.empty() ? "binary128" : "; binary128";
+  return check;
+}
+
+void check_order(const SchemeUnderTest& scheme, const char* property, int claimed, const std::optional<int>& derived,
+                 std::initializer_list<ProblemFunction> problems, std::vector<PropertyCheck>& checks) {
+  const ProblemFunction problem = applicable(scheme.integrator.info(), problems);
+  if (problem == nullptr || claimed == 0 || !scheme.integrator.info().has_fixed_step) {
+    checks.push_back({.property = property,
+                      .reason = problem == nullptr ? "the scheme is not for this class of problems"
+                                                   : "the scheme has no fixed order"});
+    return;
+  }
+  OrderMeasurement measurement(scheme.integrator, problem, claimed);
+  measurement.run();
+  checks.push_back(judge(property, claimed, derived, measurement));
+}
+
+}  // namespace
+
+void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
+  const MethodInfo& info = scheme.integrator.info();
+  const schemes::DerivedProperties derived = schemes::derive(scheme.data);
+  check_order(scheme, "order, forces f(t, q)", info.order, derived.order, {driven_oscillators, spring_network}, checks);
+  check_order(scheme, "order, forces f(t, q, v)", info.order_with_velocity_forces, derived.order_with_velocity_forces,
+              {damped_oscillators, damped_spring_network}, checks);
+  check_order(scheme, "order, y' = f(t, y)", info.order, derived.order, {first_order_flow}, checks);
+}
+
+}  // namespace fw::analysis
