@@ -48,15 +48,18 @@ TEST(LinearMultistep, SeesAWrongCoefficientOfBdf2) {
   EXPECT_FALSE(observed.position.valid && std::abs(observed.position.order - 2.0) < 0.5);
 }
 
+/// ẏ = n t^{n−1}, y = tⁿ.
+struct Power {
+  int exponent;
+
+  template <class S>
+  void operator()(const S& t, std::span<const S>, std::span<S> dydt) const {
+    dydt[0] = S(exponent);
+    for (int i = 1; i < exponent; ++i) dydt[0] *= t;
+  }
+};
+
 TEST(LinearMultistep, IsExactForPolynomialsOfItsOrder) {
-  struct Power {
-    int exponent;
-    void operator()(const auto& t, auto, auto dydt) const {
-      auto value = t * 0.0 + exponent;
-      for (int i = 1; i < exponent; ++i) value *= t;
-      dydt[0] = value;
-    }
-  };
   for (const auto& formula : schemes::multistep_formulas()) {
     const auto scheme = make_linear_multistep(formula);
     for (const int excess : {0, 1}) {
@@ -138,14 +141,18 @@ TEST(StartingSteps, HaveALocalErrorOfTheirOrder) {
   }
 }
 
+struct StiffSpring {
+  template <class S>
+  void operator()(const S&, std::span<const S> q, std::span<const S>, std::span<S> f) const {
+    f[0] = S(-1e6) * q[0];
+  }
+};
+
 TEST(Bdf2, DampsAStiffSpringAtOnceAndTheTrapezoidalRuleDoesNot) {
   // m q̈ = −k q with hω = 1000: two BDF2 steps remove it, the trapezoidal rule keeps it for ever.
-  struct StiffSpring {
-    void operator()(const auto&, auto q, auto, auto f) const { f[0] = -1e6 * q[0]; }
-  };
   Ivp ivp;
-  ivp.system =
-      std::make_shared<FunctorSecondOrderSystem<StiffSpring>>(Vector{{1.0}}, ForceClass::position, StiffSpring{});
+  ivp.system = std::make_shared<FunctorSecondOrderSystem<StiffSpring>>(Vector{{1.0}}, ForceClass::position,
+                                                                       StiffSpring{});
   ivp.y0 = Vector{{1.0, 0.0}};
   ivp.t1 = 100.0;
   EXPECT_LT(run(*make("bdf2"), ivp, 1.0).state.norm(), 1e-12);

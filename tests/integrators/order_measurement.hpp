@@ -13,8 +13,8 @@
 
 namespace fw::integrators {
 
-/// Three masses on nonlinear springs, driven, with or without linear and cubic dampers: nonlinear, non-autonomous,
-/// several degrees of freedom, masses other than 1.
+/// Three masses on nonlinear springs, driven, with or without linear and cubic dampers: nonlinear,
+/// non-autonomous, several degrees of freedom, masses other than 1.
 struct DrivenChain {
   double damping = 0.0;
 
@@ -80,8 +80,8 @@ struct ObservedOrders {
 };
 
 /// Fits orders to the end errors of both halves of the state with `coarsest`·√2^k steps, k = 0 … levels − 1.
-inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, const Vector& reference, int coarsest,
-                                      int levels) {
+inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, const Vector& reference,
+                                      int coarsest, int levels) {
   std::vector<double> steps, position, velocity;
   const Index n = ivp.y0.size() / 2;
   for (int k = 0; k < levels; ++k) {
@@ -99,10 +99,11 @@ inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, 
 }
 
 /// Both halves of the state converge with the order given, within `window`.
-inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector& reference, double order, int coarsest,
-                         int levels, const std::string& what, double window = 0.1) {
+inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector& reference, double order,
+                         int coarsest, int levels, const std::string& what, double window = 0.1) {
   const ObservedOrders observed = observed_orders(scheme, ivp, reference, coarsest, levels);
-  for (const auto& [fit, half] : {std::pair{observed.position, "positions"}, std::pair{observed.velocity, "velocities"}}) {
+  for (const auto& [fit, half] :
+       {std::pair{observed.position, "positions"}, std::pair{observed.velocity, "velocities"}}) {
     EXPECT_TRUE(fit.valid) << scheme.info().name << ", " << what << ", " << half << ": " << fit.reason;
     EXPECT_NEAR(fit.order, order, window) << scheme.info().name << ", " << what << ", " << half;
     EXPECT_GE(fit.correlation, 0.999) << scheme.info().name << ", " << what << ", " << half;
@@ -115,16 +116,19 @@ inline void expect_claimed_orders(const Integrator& scheme, int coarsest, int le
     if (damped && scheme.info().needs_position_forces) continue;
     const Ivp ivp = driven_chain(damped);
     const int order = damped ? scheme.info().order_with_velocity_forces : scheme.info().order;
-    expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped", window);
+    expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped",
+                 window);
   }
 }
 
 /// The same on a network of springs.
-inline void expect_claimed_orders_of_springs(const Integrator& scheme, int coarsest, int levels, double window = 0.1) {
+inline void expect_claimed_orders_of_springs(const Integrator& scheme, int coarsest, int levels,
+                                             double window = 0.1) {
   for (const bool damped : {false, true}) {
     const Ivp ivp = random_network(31, {.is_damped = damped}, 0.31);
     const int order = damped ? scheme.info().order_with_velocity_forces : scheme.info().order;
-    expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped", window);
+    expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped",
+                 window);
   }
 }
 
