@@ -1,6 +1,6 @@
 #include "integrators/linear_multistep.hpp"
 
-#include <stdexcept>
+#include <algorithm>
 #include <vector>
 
 #include "integrators/implicit_update.hpp"
@@ -50,8 +50,9 @@ class LinearMultistepStepper final : public Stepper {
         slope_(ivp.y0.size()) {
     if (!formula.is_explicit()) update_ = make_implicit_update(system_, work);
     if (formula.steps() > 1) {
-      start_ = formula.is_explicit() ? make_explicit_starting_steps(ivp, formula.order, work)
-                                     : make_implicit_starting_steps(ivp, formula.order, work);
+      const int order = std::max(1, formula.order);  // of a formula with a seeded mistake it may be 0
+      start_ = formula.is_explicit() ? make_explicit_starting_steps(ivp, order, work)
+                                     : make_implicit_starting_steps(ivp, order, work);
     }
   }
 

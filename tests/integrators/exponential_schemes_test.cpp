@@ -6,7 +6,6 @@
 #include "integrators/exponential_rosenbrock_euler.hpp"
 #include "integrators/gautschi.hpp"
 #include "integrators/krylov_phi.hpp"
-#include "integrators/velocity_verlet.hpp"
 #include "order_measurement.hpp"
 
 namespace fw::integrators {
@@ -100,7 +99,7 @@ TEST(Gautschi, IsExactWhereForcesAreLinearWhateverTheStep) {
   const Solution solution = run(*make_gautschi(), ivp, 1.0);
   EXPECT_LT((positions(solution.state) - positions(reference)).norm(), 1e-10);
   EXPECT_LT((solution.state - reference).norm(), 1e-8);
-  EXPECT_FALSE(run(*make_velocity_verlet(), ivp, 0.5).state.norm() <
+  EXPECT_FALSE(run(*splitting("velocity_verlet"), ivp, 0.5).state.norm() <
                10.0);  // negative control: unstable there
 }
 

@@ -1,5 +1,4 @@
 #include "core/error.hpp"
-#include "integrators/implicit_euler.hpp"
 #include "integrators/projective_dynamics.hpp"
 #include "integrators/xpbd.hpp"
 #include "order_measurement.hpp"

@@ -18,11 +18,14 @@ std::unique_ptr<Integrator> make(const std::string& name) {
   throw std::logic_error("no formula " + name);
 }
 
+/// High orders have to be measured above the floor of rounding, low ones in the asymptotic range.
+int coarsest_steps(const Integrator& scheme) { return scheme.info().order <= 3 ? 150 : scheme.info().order <= 4 ? 80 : 45; }
+
 TEST(LinearMultistep, ConvergesWithTheOrderOfItsFormulaOnMechanicalSystems) {
   for (const auto& formula : schemes::multistep_formulas()) {
     const auto scheme = make_linear_multistep(formula);
-    EXPECT_EQ(scheme->info().order, schemes::multistep_formulas().empty() ? 0 : formula.name.back() - '0');
-    expect_claimed_orders(*scheme, 60, 9);
+    EXPECT_EQ(scheme->info().order, formula.name.back() - '0');
+    expect_claimed_orders(*scheme, coarsest_steps(*scheme), 9);
   }
 }
 
@@ -31,7 +34,7 @@ TEST(LinearMultistep, ConvergesWithTheOrderOfItsFormulaOnFirstOrderSystems) {
   const Vector reference = certified_end(ivp);
   for (const auto& formula : schemes::multistep_formulas()) {
     const auto scheme = make_linear_multistep(formula);
-    expect_order(*scheme, ivp, reference, scheme->info().order, 60, 9, "first order");
+    expect_order(*scheme, ivp, reference, scheme->info().order, coarsest_steps(*scheme), 9, "first order");
   }
 }
 
@@ -45,7 +48,7 @@ TEST(LinearMultistep, SeesAWrongCoefficientOfBdf2) {
   const auto scheme = make_linear_multistep(wrong);
   EXPECT_LT(scheme->info().order, 2);
   const ObservedOrders observed = observed_orders(*scheme, ivp, reference, 60, 8);
-  EXPECT_FALSE(observed.position.valid && std::abs(observed.position.order - 2.0) < 0.5);
+  EXPECT_FALSE(observed.position.valid && observed.position.order > 0.5);  // does not converge at all
 }
 
 /// ẏ = n t^{n−1}, y = tⁿ.

@@ -1,7 +1,6 @@
 #include "integrators/r_respa.hpp"
 
 #include "core/error.hpp"
-#include "integrators/velocity_verlet.hpp"
 #include "order_measurement.hpp"
 
 namespace fw::integrators {
@@ -30,14 +29,14 @@ TEST(Respa, ConvergesWithOrderTwoForBothClassesOfForces) {
 
 TEST(Respa, WithOneInnerStepIsVelocityVerletWhereForcesDependOnPositionOnly) {
   const Ivp ivp = two_scales(82, false, 0.5);
-  const Vector verlet = run(*make_velocity_verlet(), ivp, 1.0 / 1024.0).state;
+  const Vector verlet = run(*splitting("velocity_verlet"), ivp, 1.0 / 1024.0).state;
   EXPECT_LT((run(*make_r_respa({.inner_steps = 1}), ivp, 1.0 / 1024.0).state - verlet).norm(), 1e-10);
 }
 
 TEST(Respa, IsStableWhereTheStiffSpringsForbidVelocityVerlet) {
   const Ivp ivp = two_scales(83, false, 2.0);
   const double h = 0.04;
-  const Solution verlet = run(*make_velocity_verlet(), ivp, h);
+  const Solution verlet = run(*splitting("velocity_verlet"), ivp, h);
   EXPECT_TRUE(!verlet.status.ok() || verlet.state.norm() > 1e3);
   const Solution respa = run(*make_r_respa(), ivp, h);
   ASSERT_TRUE(respa.status.ok());

@@ -3,7 +3,6 @@
 #include "integrators/generalised_alpha.hpp"
 #include "integrators/hht_alpha.hpp"
 #include "integrators/newmark.hpp"
-#include "integrators/velocity_verlet.hpp"
 #include "order_measurement.hpp"
 
 namespace fw::integrators {
@@ -78,7 +77,7 @@ TEST(Newmark, WithoutBetaIsVelocityVerlet) {
   for (const bool damped : {false, true}) {
     const Ivp ivp = random_network(41, {.is_damped = damped}, 0.5);
     const Solution newmark = run(*make_newmark({.beta = 0.0}), ivp, 1.0 / 512.0);
-    const Solution verlet = run(*make_velocity_verlet(), ivp, 1.0 / 512.0);
+    const Solution verlet = run(*splitting("velocity_verlet"), ivp, 1.0 / 512.0);
     ASSERT_TRUE(newmark.status.ok());
     EXPECT_LT((newmark.state - verlet.state).norm(), 1e-11 * verlet.state.norm()) << damped;
     if (!damped) {
