@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -80,13 +81,14 @@ struct ObservedOrders {
   analysis::OrderFit position{}, velocity{};
 };
 
-/// Fits orders to the end errors of both halves of the state with `coarsest`·√2^k steps, k = 0 … levels − 1.
+/// Fits orders to the end errors of both halves of the state with `coarsest`·`refinement`^k steps, k = 0 …
+/// levels − 1.
 inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, const Vector& reference,
-                                      int coarsest, int levels) {
+                                      int coarsest, int levels, double refinement) {
   std::vector<double> steps, position, velocity;
   const Index n = ivp.y0.size() / 2;
   for (int k = 0; k < levels; ++k) {
-    const double count = std::round(coarsest * std::pow(2.0, 0.5 * k));
+    const double count = std::round(coarsest * std::pow(refinement, k));
     const double h = (ivp.t1 - ivp.t0) / count;
     const Solution solution = run(scheme, ivp, h);
     EXPECT_TRUE(solution.status.ok()) << scheme.info().name << ": " << solution.status.describe();
@@ -101,8 +103,9 @@ inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, 
 
 /// Both halves of the state converge with the order given, within `window`.
 inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector& reference, double order,
-                         int coarsest, int levels, const std::string& what, double window = 0.1) {
-  const ObservedOrders observed = observed_orders(scheme, ivp, reference, coarsest, levels);
+                         int coarsest, int levels, const std::string& what,
+                         double refinement = std::numbers::sqrt2, double window = 0.1) {
+  const ObservedOrders observed = observed_orders(scheme, ivp, reference, coarsest, levels, refinement);
   for (const auto& [fit, half] :
        {std::pair{observed.position, "positions"}, std::pair{observed.velocity, "velocities"}}) {
     EXPECT_TRUE(fit.valid) << scheme.info().name << ", " << what << ", " << half << ": " << fit.reason;
@@ -112,7 +115,8 @@ inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector&
 }
 
 /// Order on the driven chain without and with dampers, as the scheme claims it.
-inline void expect_claimed_orders(const Integrator& scheme, int coarsest, int levels, double window = 0.1) {
+inline void expect_claimed_orders(const Integrator& scheme, int coarsest, int levels,
+                                  double refinement = std::numbers::sqrt2) {
   for (const bool damped : {false, true}) {
     if (damped && scheme.info().needs_position_forces) continue;
     const Ivp ivp = driven_chain(damped);
@@ -120,20 +124,23 @@ inline void expect_claimed_orders(const Integrator& scheme, int coarsest, int le
                                                      certified_end(driven_chain(true))};
     const int order = damped ? scheme.info().order_with_velocity_forces : scheme.info().order;
     expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped",
-                 window);
+                 refinement);
   }
 }
 
 /// The same on a network of springs.
 inline void expect_claimed_orders_of_springs(const Integrator& scheme, int coarsest, int levels,
-                                             double window = 0.1) {
+                                             double refinement = std::numbers::sqrt2) {
   for (const bool damped : {false, true}) {
-    const auto network = [](bool with_dampers) { return random_network(31, {.is_damped = with_dampers}, 0.31); };
-    static const std::array<Vector, 2> references = {certified_end(network(false)), certified_end(network(true))};
+    const auto network = [](bool with_dampers) {
+      return random_network(31, {.is_damped = with_dampers}, 0.31);
+    };
+    static const std::array<Vector, 2> references = {certified_end(network(false)),
+                                                     certified_end(network(true))};
     const Ivp ivp = network(damped);
     const int order = damped ? scheme.info().order_with_velocity_forces : scheme.info().order;
     expect_order(scheme, ivp, certified_end(ivp), order, coarsest, levels, damped ? "damped" : "undamped",
-                 window);
+                 refinement);
   }
 }
 
