@@ -135,7 +135,7 @@ void check_momentum(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
   const double change = norm(end - start);
   double scale = 0.0;
   for (Index i = 0; i < n; ++i) scale += system.mass()[i] * std::abs(solution.state[n + i]);
-  const double allowed = std::max(2e-13, 10.0 * info.iteration_tolerance);
+  const double allowed = std::max(2e-13, 10.0 * scheme.integrator.info().iteration_tolerance);
   check.claimed = "conserved";
   check.measured = fmt::format("{:.1e}", change / scale);
   check.finding = solution.status.ok() && change <= allowed * scale ? Finding::holds : Finding::fails;

@@ -43,6 +43,8 @@ struct MethodInfo {
   bool needs_position_forces = false;  ///< works where f = f(t, q) only
   bool needs_springs = false;          ///< works on mass-spring systems only
   bool needs_force_splitting = false;  ///< works where forces come in a stiff and a soft part
+  /// What iterative solvers leave of their equations, relative: conservation holds to it. 0: rounding.
+  double iteration_tolerance = 0.0;
   std::string formula{};               ///< one step in formula
   std::string reference{};             ///< literature
 };
