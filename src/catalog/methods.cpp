@@ -8,18 +8,32 @@
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "integrators/additive_runge_kutta.hpp"
+#include "integrators/average_vector_field.hpp"
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
+#include "integrators/discrete_gradient.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/exponential_rosenbrock_euler.hpp"
 #include "integrators/fully_implicit_runge_kutta.hpp"
+#include "integrators/gautschi.hpp"
+#include "integrators/generalised_alpha.hpp"
+#include "integrators/hht_alpha.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
+#include "integrators/linear_multistep.hpp"
+#include "integrators/newmark.hpp"
 #include "integrators/nystrom.hpp"
+#include "integrators/projective_dynamics.hpp"
+#include "integrators/r_respa.hpp"
 #include "integrators/rosenbrock.hpp"
+#include "integrators/runge_kutta_chebyshev.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
+#include "integrators/xpbd.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "schemes/additive_tableaus.hpp"
+#include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "schemes/multistep_formulas.hpp"
 #include "schemes/nystrom_tableaus.hpp"
 #include "schemes/rosenbrock_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
@@ -57,6 +71,18 @@ double positive_number(const MethodOptions& options, const std::string& name, do
   if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
     throw InputError(
         fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
+  }
+  return value;
+}
+
+int whole_number(const std::string& name, const std::string& text, int least, int most,
+                 const std::string& alternative = "") {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || value < least || value > most) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number from {} to {}{}", name,
+                                 text, least, most, alternative));
   }
   return value;
 }
@@ -116,6 +142,126 @@ MethodEntry linearised_implicit_euler() {
           }};
 }
 
+MethodEntry runge_kutta_chebyshev(int order) {
+  const integrators::RungeKuttaChebyshevOptions defaults{.order = order};
+  return {integrators::make_runge_kutta_chebyshev(defaults)->info(),
+          {{"stages", fmt::format("{}", defaults.stages),
+            "number of stages, or auto (from the step and the spectral radius of J)"}},
+          schemes::chebyshev_tableau(order, defaults.stages),
+          [defaults](const MethodOptions& options) {
+            integrators::RungeKuttaChebyshevOptions chosen = defaults;
+            const auto option = options.find("stages");
+            if (option != options.end()) {
+              const bool automatic = option->second == "auto";
+              chosen.stages = automatic ? 0
+                                        : whole_number(option->first, option->second,
+                                                       integrators::fewest_chebyshev_stages,
+                                                       integrators::most_chebyshev_stages, " or auto");
+            }
+            return integrators::make_runge_kutta_chebyshev(chosen);
+          }};
+}
+
+/// A number whose range the method itself checks.
+double number(const MethodOptions& options, const std::string& name, double fallback) {
+  const auto option = options.find(name);
+  if (option == options.end()) return fallback;
+  double value = 0.0;
+  const char* end = option->second.data() + option->second.size();
+  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
+  if (error != std::errc() || stop != end) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a number", name, option->second));
+  }
+  return value;
+}
+
+/// A count whose range the method itself checks.
+int count(const MethodOptions& options, const std::string& name, int fallback) {
+  const auto option = options.find(name);
+  if (option == options.end()) return fallback;
+  int value = 0;
+  const char* end = option->second.data() + option->second.size();
+  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
+  if (error != std::errc() || stop != end) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number", name, option->second));
+  }
+  return value;
+}
+
+/// Structural dynamics, energy–momentum, exponential, graphics and multirate schemes.
+std::vector<MethodEntry> specialised_schemes() {
+  using namespace integrators;
+  std::vector<MethodEntry> list;
+  list.push_back({make_newmark()->info(),
+                  {{"beta", "0.25", "0 (central differences) to 0.5; 0.25 is average acceleration"},
+                   {"gamma", "0.5", "0.5 (order 2) to 1 (numerical damping)"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_newmark(
+                        {.beta = number(options, "beta", 0.25), .gamma = number(options, "gamma", 0.5)});
+                  }});
+  list.push_back({make_hht_alpha()->info(),
+                  {{"alpha", "-0.1", "-1/3 to 0, as in the original paper; 0: no numerical damping"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_hht_alpha({.alpha = number(options, "alpha", -0.1)});
+                  }});
+  list.push_back({make_generalised_alpha()->info(),
+                  {{"rho_infinity", "0.8", "spectral radius at infinite frequency, 0 to 1"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_generalised_alpha({.rho_infinity = number(options, "rho_infinity", 0.8)});
+                  }});
+  list.push_back({make_average_vector_field()->info(),
+                  {{"quadrature_points", "4", "Gauss points, 1 to 8"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_average_vector_field(
+                        {.quadrature_points = count(options, "quadrature_points", 4)});
+                  }});
+  list.push_back(plain(make_discrete_gradient));
+  list.push_back({make_exponential_rosenbrock_euler()->info(),
+                  {{"krylov_tolerance", "1e-12", "of a phi function, relative to the state"},
+                   {"krylov_dimension", "200", "largest dimension of the Krylov space"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_exponential_rosenbrock_euler(
+                        {.krylov_tolerance = number(options, "krylov_tolerance", 1e-12),
+                         .krylov_dimension = count(options, "krylov_dimension", 200)});
+                  }});
+  list.push_back({make_gautschi()->info(),
+                  {{"filter", "gautschi", "gautschi, deuflhard or mollified_impulse"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_gautschi(
+                        {.filter = choose<TrigonometricFilter>(
+                             options, "filter", TrigonometricFilter::gautschi,
+                             {{"gautschi", TrigonometricFilter::gautschi},
+                              {"deuflhard", TrigonometricFilter::deuflhard},
+                              {"mollified_impulse", TrigonometricFilter::mollified_impulse}})});
+                  }});
+  list.push_back({make_r_respa()->info(),
+                  {{"inner_steps", "10", "steps of the stiff forces per step"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_r_respa({.inner_steps = count(options, "inner_steps", 10)});
+                  }});
+  list.push_back({make_projective_dynamics()->info(),
+                  {{"iterations", "10", "local-global iterations per step"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_projective_dynamics({.iterations = count(options, "iterations", 10)});
+                  }});
+  list.push_back({make_xpbd()->info(),
+                  {{"substeps", "10", "substeps per step"}, {"iterations", "1", "sweeps per substep"}},
+                  {},
+                  [](const MethodOptions& options) {
+                    return make_xpbd({.substeps = count(options, "substeps", 10),
+                                      .iterations = count(options, "iterations", 1)});
+                  }});
+  return list;
+}
+
 MethodEntry cvode_bdf() {
   const oracles::CvodeOptions defaults;
   return {oracles::make_cvode_bdf()->info(),
@@ -141,6 +287,8 @@ std::vector<MethodEntry> make_list() {
                       return integrators::make_splitting(scheme);
                     }});
   }
+  list.push_back(runge_kutta_chebyshev(1));
+  list.push_back(runge_kutta_chebyshev(2));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
@@ -166,6 +314,13 @@ std::vector<MethodEntry> make_list() {
         }));
   }
   list.push_back(linearised_implicit_euler());
+  for (const schemes::MultistepFormula& formula : schemes::multistep_formulas()) {
+    list.push_back(
+        {integrators::make_linear_multistep(formula)->info(), {}, formula, [&formula](const MethodOptions&) {
+           return integrators::make_linear_multistep(formula);
+         }});
+  }
+  for (MethodEntry& entry : specialised_schemes()) list.push_back(std::move(entry));
   list.push_back(cvode_bdf());
   return list;
 }

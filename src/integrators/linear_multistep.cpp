@@ -1,6 +1,6 @@
 #include "integrators/linear_multistep.hpp"
 
-#include <stdexcept>
+#include <algorithm>
 #include <vector>
 
 #include "integrators/implicit_update.hpp"
@@ -15,6 +15,7 @@ namespace {
 struct Formula {
   std::vector<double> alpha{}, beta{};
   int order = 0;
+  double sum_before = 0.0;  ///< −Σ_{j<k} α_j, which is 1 for every consistent formula; without rounding
 
   std::size_t steps() const { return alpha.size() - 1; }
   bool is_explicit() const { return beta.back() == 0.0; }
@@ -50,8 +51,9 @@ class LinearMultistepStepper final : public Stepper {
         slope_(ivp.y0.size()) {
     if (!formula.is_explicit()) update_ = make_implicit_update(system_, work);
     if (formula.steps() > 1) {
-      start_ = formula.is_explicit() ? make_explicit_starting_steps(ivp, formula.order, work)
-                                     : make_implicit_starting_steps(ivp, formula.order, work);
+      const int order = std::max(1, formula.order);  // of a formula with a seeded mistake it may be 0
+      start_ = formula.is_explicit() ? make_explicit_starting_steps(ivp, order, work)
+                                     : make_implicit_starting_steps(ivp, order, work);
     }
   }
 
@@ -66,9 +68,11 @@ class LinearMultistepStepper final : public Stepper {
     if (!states_.full()) return start_->step(t, h, y);
 
     const std::size_t k = formula_.steps();
-    base_.setZero();
+    // −Σ_{j<k} α_j y_{n+j} in differences to the last state, so that what rests stays at rest to the last
+    // bit.
+    base_ = formula_.sum_before * y;
     for (std::size_t j = 0; j < k; ++j) {
-      if (formula_.alpha[j] != 0.0) base_ -= formula_.alpha[j] * states_[j];
+      if (j + 1 < k && formula_.alpha[j] != 0.0) base_ -= formula_.alpha[j] * (states_[j] - y);
       if (formula_.beta[j] != 0.0) base_ += (h * formula_.beta[j]) * slopes_[j];
     }
     if (formula_.is_explicit()) {
@@ -96,6 +100,10 @@ class LinearMultistepStepper final : public Stepper {
 std::unique_ptr<Integrator> make_linear_multistep(const schemes::MultistepFormula& formula) {
   Formula numbers{.order = schemes::order_of_accuracy(formula)};
   for (const schemes::Coefficient& alpha : formula.alpha) numbers.alpha.push_back(schemes::as<double>(alpha));
+  schemes::Rational sum = 0;
+  for (std::size_t j = 0; j + 1 < formula.alpha.size(); ++j)
+    sum -= schemes::as<schemes::Rational>(formula.alpha[j]);
+  numbers.sum_before = sum.convert_to<double>();
   for (const schemes::Coefficient& beta : formula.beta) numbers.beta.push_back(schemes::as<double>(beta));
   MethodInfo info{.name = formula.name,
                   .title = formula.title,
