@@ -9,7 +9,8 @@ namespace fw::schemes {
 
 namespace {
 
-/// A number on its way through the expression: the binary128 value and, as long as there is one, the exact one.
+/// A number on its way through the expression: the binary128 value and, as long as there is one, the exact
+/// one.
 struct Term {
   Float128 value;
   std::optional<Rational> rational;
@@ -152,7 +153,8 @@ class Parser {
 
 }  // namespace
 
-Coefficient::Coefficient(int value) : text_(std::to_string(value)), value_(value), rational_(Rational(value)) {}
+Coefficient::Coefficient(int value)
+    : text_(std::to_string(value)), value_(value), rational_(Rational(value)) {}
 
 Coefficient::Coefficient(const char* text) : Coefficient(std::string(text)) {}
 

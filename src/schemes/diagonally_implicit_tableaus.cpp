@@ -135,32 +135,32 @@ ButcherTableau esdirk5() {
                             quotient("-39379526789629/19018526304540"),
                             quotient("32727382324388/42900044865799"),
                             g};
-  return {.name = "esdirk5",
-          .title = "ESDIRK method of order 5(4), implicit part of ARK5(4)8L[2]SA",
-          .A = {{},
-                {g, g},
-                {"41/400", quotient("-567603406766/11931857230679"), g},
-                {quotient("683785636431/9252920307686"), 0, quotient("-110385047103/1367015193373"), g},
-                {quotient("3016520224154/10081342136671"), 0, quotient("30586259806659/12414158314087"),
-                 quotient("-22760509404356/11113319521817"), g},
-                {quotient("218866479029/1489978393911"), 0, quotient("638256894668/5436446318841"),
-                 quotient("-1179710474555/5321154724896"), quotient("-60928119172/8023461067671"), g},
-                {quotient("1020004230633/5715676835656"), 0, quotient("25762820946817/25263940353407"),
-                 quotient("-2161375909145/9755907335909"), quotient("-211217309593/5846859502534"),
-                 quotient("-4269925059573/7827059040749"), g},
-                b},
-          .b = b,
-          .b_embedded = {quotient("-975461918565/9796059967033"), 0, 0,
-                         quotient("78070527104295/32432590147079"), quotient("-548382580838/3424219808633"),
-                         quotient("-33438840321285/15594753105479"), quotient("3629800801594/4656183773603"),
-                         quotient("4035322873751/18575991585200")},
-          .reference = "[Kennedy, Carpenter 2003]"};
+  return {
+      .name = "esdirk5",
+      .title = "ESDIRK method of order 5(4), implicit part of ARK5(4)8L[2]SA",
+      .A = {{},
+            {g, g},
+            {"41/400", quotient("-567603406766/11931857230679"), g},
+            {quotient("683785636431/9252920307686"), 0, quotient("-110385047103/1367015193373"), g},
+            {quotient("3016520224154/10081342136671"), 0, quotient("30586259806659/12414158314087"),
+             quotient("-22760509404356/11113319521817"), g},
+            {quotient("218866479029/1489978393911"), 0, quotient("638256894668/5436446318841"),
+             quotient("-1179710474555/5321154724896"), quotient("-60928119172/8023461067671"), g},
+            {quotient("1020004230633/5715676835656"), 0, quotient("25762820946817/25263940353407"),
+             quotient("-2161375909145/9755907335909"), quotient("-211217309593/5846859502534"),
+             quotient("-4269925059573/7827059040749"), g},
+            b},
+      .b = b,
+      .b_embedded = {quotient("-975461918565/9796059967033"), 0, 0, quotient("78070527104295/32432590147079"),
+                     quotient("-548382580838/3424219808633"), quotient("-33438840321285/15594753105479"),
+                     quotient("3629800801594/4656183773603"), quotient("4035322873751/18575991585200")},
+      .reference = "[Kennedy, Carpenter 2003]"};
 }
 
 const std::vector<ButcherTableau>& diagonally_implicit_tableaus() {
   static const std::vector<ButcherTableau> list =
-      checked({implicit_euler(), implicit_midpoint(), trapezoidal(), crouzeix3(), sdirk2(), sdirk3(), sdirk4(),
-               tr_bdf2(), esdirk3(), esdirk4(), esdirk5()});
+      checked({implicit_euler(), implicit_midpoint(), trapezoidal(), crouzeix3(), sdirk2(), sdirk3(),
+               sdirk4(), tr_bdf2(), esdirk3(), esdirk4(), esdirk5()});
   return list;
 }
 
