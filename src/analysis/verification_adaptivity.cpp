@@ -89,7 +89,14 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
     checks.push_back(check);
     return;
   }
-  const Ivp& ivp = applicable(info, {damped_oscillators, driven_oscillators, first_order_flow}).front()();
+  const auto problems = applicable(
+      info, {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network});
+  if (problems.empty()) {
+    check.reason = "no problem for it";
+    checks.push_back(check);
+    return;
+  }
+  const Ivp& ivp = problems.front()();
   std::vector<double> steps, estimates;
   for (double h = 0.8; h > 1e-3; h *= 0.75) {
     Work work;
