@@ -40,7 +40,7 @@ struct DrivenChain {
   }
 };
 
-inline Ivp driven_chain(bool damped, double end_time = 1.93) {
+inline Ivp driven_chain(bool damped, double end_time = 1.5) {
   Ivp ivp;
   const Vector mass{{1.7, 0.6, 2.3}};
   ivp.system = std::make_shared<FunctorSecondOrderSystem<DrivenChain>>(
