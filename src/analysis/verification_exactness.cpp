@@ -125,6 +125,14 @@ double probe_nodal(const Integrator& integrator, const schemes::TableauValues<do
   return largest;
 }
 
+/// q̈ = −q: the number of right-hand sides does not depend on the solution.
+struct Oscillator {
+  template <class S>
+  void operator()(const S&, std::span<const S> q, std::span<const S>, std::span<S> f) const {
+    f[0] = -q[0];
+  }
+};
+
 bool has_distinct_nodes(const std::vector<double>& c) {
   for (std::size_t i = 0; i < c.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -177,13 +185,6 @@ void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<Property
     checks.push_back(check);
     return;
   }
-  // q̈ = −q: the number of right-hand sides does not depend on the solution.
-  struct Oscillator {
-    template <class S>
-    void operator()(const S&, std::span<const S> q, std::span<const S>, std::span<S> f) const {
-      f[0] = -q[0];
-    }
-  };
   const auto system = std::make_shared<FunctorSecondOrderSystem<Oscillator>>(
       Vector::Constant(1, 1.5), ForceClass::position, Oscillator{});
   if (const std::string why = why_not_applicable(info, *system); !why.empty()) {

@@ -7,11 +7,13 @@
 
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
+#include "integrators/additive_runge_kutta.hpp"
 #include "integrators/average_vector_field.hpp"
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/discrete_gradient.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
 #include "integrators/exponential_rosenbrock_euler.hpp"
+#include "integrators/fully_implicit_runge_kutta.hpp"
 #include "integrators/gautschi.hpp"
 #include "integrators/generalised_alpha.hpp"
 #include "integrators/hht_alpha.hpp"
@@ -21,14 +23,19 @@
 #include "integrators/nystrom.hpp"
 #include "integrators/projective_dynamics.hpp"
 #include "integrators/r_respa.hpp"
+#include "integrators/rosenbrock.hpp"
+#include "integrators/runge_kutta_chebyshev.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "integrators/xpbd.hpp"
 #include "oracles/sundials/cvode.hpp"
+#include "schemes/additive_tableaus.hpp"
+#include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
 #include "schemes/multistep_formulas.hpp"
 #include "schemes/nystrom_tableaus.hpp"
+#include "schemes/rosenbrock_tableaus.hpp"
 #include "schemes/splitting_schemes.hpp"
 
 namespace fw::catalog {
@@ -64,6 +71,18 @@ double positive_number(const MethodOptions& options, const std::string& name, do
   if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
     throw InputError(
         fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
+  }
+  return value;
+}
+
+int whole_number(const std::string& name, const std::string& text, int least, int most,
+                 const std::string& alternative = "") {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || value < least || value > most) {
+    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number from {} to {}{}", name,
+                                 text, least, most, alternative));
   }
   return value;
 }
@@ -123,6 +142,26 @@ MethodEntry linearised_implicit_euler() {
           }};
 }
 
+MethodEntry runge_kutta_chebyshev(int order) {
+  const integrators::RungeKuttaChebyshevOptions defaults{.order = order};
+  return {integrators::make_runge_kutta_chebyshev(defaults)->info(),
+          {{"stages", fmt::format("{}", defaults.stages),
+            "number of stages, or auto (from the step and the spectral radius of J)"}},
+          schemes::chebyshev_tableau(order, defaults.stages),
+          [defaults](const MethodOptions& options) {
+            integrators::RungeKuttaChebyshevOptions chosen = defaults;
+            const auto option = options.find("stages");
+            if (option != options.end()) {
+              const bool automatic = option->second == "auto";
+              chosen.stages = automatic ? 0
+                                        : whole_number(option->first, option->second,
+                                                       integrators::fewest_chebyshev_stages,
+                                                       integrators::most_chebyshev_stages, " or auto");
+            }
+            return integrators::make_runge_kutta_chebyshev(chosen);
+          }};
+}
+
 /// A number whose range the method itself checks.
 double number(const MethodOptions& options, const std::string& name, double fallback) {
   const auto option = options.find(name);
@@ -137,7 +176,7 @@ double number(const MethodOptions& options, const std::string& name, double fall
 }
 
 /// A count whose range the method itself checks.
-int whole_number(const MethodOptions& options, const std::string& name, int fallback) {
+int count(const MethodOptions& options, const std::string& name, int fallback) {
   const auto option = options.find(name);
   if (option == options.end()) return fallback;
   int value = 0;
@@ -178,7 +217,7 @@ std::vector<MethodEntry> specialised_schemes() {
                   {},
                   [](const MethodOptions& options) {
                     return make_average_vector_field(
-                        {.quadrature_points = whole_number(options, "quadrature_points", 4)});
+                        {.quadrature_points = count(options, "quadrature_points", 4)});
                   }});
   list.push_back(plain(make_discrete_gradient));
   list.push_back({make_exponential_rosenbrock_euler()->info(),
@@ -188,7 +227,7 @@ std::vector<MethodEntry> specialised_schemes() {
                   [](const MethodOptions& options) {
                     return make_exponential_rosenbrock_euler(
                         {.krylov_tolerance = number(options, "krylov_tolerance", 1e-12),
-                         .krylov_dimension = whole_number(options, "krylov_dimension", 200)});
+                         .krylov_dimension = count(options, "krylov_dimension", 200)});
                   }});
   list.push_back({make_gautschi()->info(),
                   {{"filter", "gautschi", "gautschi, deuflhard or mollified_impulse"}},
@@ -205,20 +244,20 @@ std::vector<MethodEntry> specialised_schemes() {
                   {{"inner_steps", "10", "steps of the stiff forces per step"}},
                   {},
                   [](const MethodOptions& options) {
-                    return make_r_respa({.inner_steps = whole_number(options, "inner_steps", 10)});
+                    return make_r_respa({.inner_steps = count(options, "inner_steps", 10)});
                   }});
   list.push_back({make_projective_dynamics()->info(),
                   {{"iterations", "10", "local-global iterations per step"}},
                   {},
                   [](const MethodOptions& options) {
-                    return make_projective_dynamics({.iterations = whole_number(options, "iterations", 10)});
+                    return make_projective_dynamics({.iterations = count(options, "iterations", 10)});
                   }});
   list.push_back({make_xpbd()->info(),
                   {{"substeps", "10", "substeps per step"}, {"iterations", "1", "sweeps per substep"}},
                   {},
                   [](const MethodOptions& options) {
-                    return make_xpbd({.substeps = whole_number(options, "substeps", 10),
-                                      .iterations = whole_number(options, "iterations", 1)});
+                    return make_xpbd({.substeps = count(options, "substeps", 10),
+                                      .iterations = count(options, "iterations", 1)});
                   }});
   return list;
 }
@@ -248,12 +287,30 @@ std::vector<MethodEntry> make_list() {
                       return integrators::make_splitting(scheme);
                     }});
   }
+  list.push_back(runge_kutta_chebyshev(1));
+  list.push_back(runge_kutta_chebyshev(2));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
   list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
           return integrators::make_diagonally_implicit_runge_kutta(data, {}, controller);
+        }));
+  }
+  for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
+    list.push_back(
+        {integrators::make_fully_implicit_runge_kutta(tableau)->info(),
+         {},
+         tableau,
+         [&tableau](const MethodOptions&) { return integrators::make_fully_implicit_runge_kutta(tableau); }});
+  }
+  for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
+    list.push_back(with_controller(tableau, integrators::make_rosenbrock));
+  }
+  for (const schemes::AdditiveTableau& tableau : schemes::additive_tableaus()) {
+    list.push_back(
+        with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
+          return integrators::make_additive_runge_kutta(data, {}, controller);
         }));
   }
   list.push_back(linearised_implicit_euler());

@@ -25,6 +25,11 @@ class AdaptiveIntegrator final : public Integrator {
   const MethodInfo& info() const override { return info_; }
   const ExtendedSolver& extended_solver() const override { return extended_solver_; }
 
+  /// The state of a run of its own, for a look at single steps and their error estimates.
+  std::unique_ptr<AdaptiveStepper> make_stepper(const Ivp& ivp, Work& work) const {
+    return make_stepper_(ivp, work);
+  }
+
  private:
   Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
 

@@ -133,6 +133,7 @@ std::unique_ptr<Integrator> make_average_vector_field(const AverageVectorFieldOp
                   .stages = options.quadrature_points,
                   .is_explicit = false,
                   .is_symplectic = options.quadrature_points == 1,
+                  .is_symmetric = true,
                   .is_a_stable = true,
                   .needs_second_order = true,
                   .formula =

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "integrators/adaptive_integrator.hpp"
+#include "integrators/extended_runge_kutta.hpp"
 #include "integrators/linear_combination.hpp"
 #include "integrators/stepper.hpp"
 #include "integrators/tableau_info.hpp"
@@ -53,7 +54,7 @@ class DiagonallyImplicitStepper final : public AdaptiveStepper {
     combine(y, h, tableau_.b, slopes_.size(), y_new);
     combine(zero_, h, error_weights_, slopes_.size(), error);
     const double gamma = tableau_.A(tableau_.stages - 1, tableau_.stages - 1);
-    return gamma == 0.0 ? Status{} : stages_->filter(t, y, h * gamma, error);
+    return gamma == 0.0 ? Status{} : stages_->filter(h * gamma, error);
   }
 
   void accept() override {
@@ -135,11 +136,13 @@ std::unique_ptr<Integrator> make_diagonally_implicit_runge_kutta(const ButcherTa
   if (tableau.b_embedded.empty()) {
     return std::make_unique<FixedStepIntegrator>(
         std::move(info),
-        [make](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> { return make(ivp, work); });
+        [make](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> { return make(ivp, work); },
+        make_extended_runge_kutta(tableau));
   }
   return std::make_unique<AdaptiveIntegrator>(
       std::move(info), controller,
-      [make](const Ivp& ivp, Work& work) -> std::unique_ptr<AdaptiveStepper> { return make(ivp, work); });
+      [make](const Ivp& ivp, Work& work) -> std::unique_ptr<AdaptiveStepper> { return make(ivp, work); },
+      make_extended_runge_kutta(tableau));
 }
 
 }  // namespace fw::integrators

@@ -75,6 +75,9 @@ std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptio
       .is_a_stable = true,
       .is_l_stable = true,
       .needs_second_order = true,
+      .iteration_tolerance = options.linear_solver.kind == linalg::LinearSolverKind::conjugate_gradient
+                                 ? options.linear_solver.relative_tolerance
+                                 : 0.0,
       .formula = "(M - hD - h²K) (v' - v) = h (f + h K v);  x' = x + h v';  f, K, D at (t+h, x, v)",
       .reference = "[Zachmann 2011, S25-S31; Baraff, Witkin 1998]"};
   return std::make_unique<FixedStepIntegrator>(

@@ -23,6 +23,7 @@ std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options) {
                   .stages = 1,
                   .is_explicit = options.beta == 0.0,
                   .is_symplectic = options.beta == 0.0 && options.gamma == 0.5,
+                  .is_symmetric = options.gamma == 0.5,
                   .is_a_stable = parameters.is_unconditionally_stable(),
                   .needs_second_order = true,
                   .formula =

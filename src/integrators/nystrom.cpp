@@ -214,6 +214,7 @@ std::unique_ptr<Integrator> make_nystrom(const NystromTableau& tableau, const Co
       .is_adaptive = adaptive,
       .embedded_order = schemes::embedded_order(tableau),
       .is_symplectic = schemes::is_symplectic(exact),
+      .is_symmetric = schemes::is_symmetric(exact),
       .needs_second_order = true,
       .needs_position_forces = position_forces,
       .formula = position_forces

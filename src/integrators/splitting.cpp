@@ -205,6 +205,7 @@ std::unique_ptr<Integrator> make_splitting(const schemes::SplittingScheme& schem
                   .order_with_velocity_forces = schemes::order_of_accuracy(scheme, true),
                   .stages = static_cast<int>(exact.kicks.size()) - (exact.first_same_as_last ? 1 : 0),
                   .is_symplectic = schemes::is_symplectic(schemes::as_nystrom(scheme)),
+                  .is_symmetric = schemes::is_symmetric(schemes::as_nystrom(scheme)),
                   .needs_second_order = true,
                   .formula = formula(scheme),
                   .reference = scheme.reference};

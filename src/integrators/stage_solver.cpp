@@ -43,7 +43,7 @@ class FirstOrderStages final : public StageSolver, private linalg::NewtonProblem
     k = (state_ - start_) / eta;
     return {};
   }
-  Status filter(double, ConstVectorRef, double, VectorRef e) override {
+  Status filter(double, VectorRef e) override {
     if (!newton_.has_matrix()) return {};
     state_ = e;
     return newton_.solve_linear(state_, e, work_);
@@ -80,13 +80,11 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
         work_(work),
         newton_(system.degrees_of_freedom(), newton_options(options)),
         matrix_(system, splitting),
-        stiffness_(splitting != nullptr ? system.tangent_pattern() : SparseMatrix()),
         force_(system.degrees_of_freedom()),
         start_position_(system.degrees_of_freedom()),
         start_velocity_(system.degrees_of_freedom()),
         position_(system.degrees_of_freedom()),
-        velocity_(system.degrees_of_freedom()),
-        zero_(Vector::Zero(system.degrees_of_freedom())) {}
+        velocity_(system.degrees_of_freedom()) {}
 
   void slope(double t, ConstVectorRef y, VectorRef k) override {
     const Index n = force_.size();
@@ -111,18 +109,11 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
     k.head(n) = start_velocity_ + eta * k.tail(n);
     return {};
   }
-  Status filter(double t, ConstVectorRef y, double eta, VectorRef e) override {
+  Status filter(double eta, VectorRef e) override {
     if (!newton_.has_matrix()) return {};
     const Index n = force_.size();
     // x_q − η x_v = e_q and M x_v − η (K x_q + D x_v) = M e_v.
-    if (splitting_ != nullptr) {
-      splitting_->stiff_stiffness(t, y.head(n), y.tail(n), stiffness_);
-      ++work_.jacobian_evaluations;
-      force_.noalias() = stiffness_ * e.head(n);
-    } else {
-      system_.tangent_product(t, y.head(n), y.tail(n), e.head(n), zero_, force_);
-      ++work_.jacobian_products;
-    }
+    force_.noalias() = matrix_.stiffness() * e.head(n);
     position_ = system_.mass().cwiseProduct(e.tail(n)) + eta * force_;
     Status status = newton_.solve_linear(position_, velocity_, work_);
     e.head(n) += eta * velocity_;
@@ -155,8 +146,7 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
   Work& work_;
   linalg::SimplifiedNewton newton_;
   StepMatrix matrix_;
-  SparseMatrix stiffness_;
-  Vector force_, start_position_, start_velocity_, position_, velocity_, zero_;
+  Vector force_, start_position_, start_velocity_, position_, velocity_;
   double time_ = 0.0, eta_ = 0.0;
 };
 

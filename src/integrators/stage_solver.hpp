@@ -10,17 +10,20 @@ namespace fw::integrators {
 
 /// How the stage equations of implicit schemes are solved.
 struct ImplicitOptions {
-  /// Remaining error of Newton's iteration relative to the state. The default is the level of rounding, with constant
-  /// steps as well as with chosen ones, so that the iteration never limits an order; see `SimplifiedNewton`.
+  /// Remaining error of Newton's iteration relative to the state. The default is the level of rounding, with
+  /// constant steps as well as with chosen ones, so that the iteration never limits an order; see
+  /// `SimplifiedNewton`.
   double newton_tolerance = 1e-15;
   /// A rate of convergence above this asks for a new matrix at the next stage; 0: a new one for each stage.
   double rate_of_renewal = 0.1;
 };
 
-/// Solves the stages of diagonally implicit schemes, k = f(t, ȳ + η k) with η = hγ, by simplified Newton iterations.
+/// Solves the stages of diagonally implicit schemes, k = f(t, ȳ + η k) with η = hγ, by simplified Newton
+/// iterations.
 ///
-/// A first-order system is solved for Y = ȳ + η k with the matrix I − ηJ, and k = (Y − ȳ)/η, which does not magnify
-/// what the iteration has left [Hairer, Wanner 1996, IV.8]. A second-order system is reduced to its velocities,
+/// A first-order system is solved for Y = ȳ + η k with the matrix I − ηJ, and k = (Y − ȳ)/η, which does not
+/// magnify what the iteration has left [Hairer, Wanner 1996, IV.8]. A second-order system is reduced to its
+/// velocities,
 ///   M (V − v̄) = η f(t, q̄ + η V, V),   matrix M − η D − η² K of half the size,
 /// and then k = (V, M⁻¹f), V = v̄ + η M⁻¹f with the force evaluated last: momentum changes by forces only.
 class StageSolver {
@@ -33,10 +36,9 @@ class StageSolver {
   /// k holds the initial guess and receives the solution.
   virtual Status solve(double t, double eta, ConstVectorRef start, VectorRef k) = 0;
 
-  /// e ← (I − ηJ)⁻¹ e with the last matrix: a filter that keeps an error estimate from being governed by components
-  /// that the scheme damps [Hairer, Wanner 1996, IV.8]. Leaves e where there is no matrix yet. (t, y): where J·e is
-  /// evaluated.
-  virtual Status filter(double t, ConstVectorRef y, double eta, VectorRef e) = 0;
+  /// e ← (I − ηJ)⁻¹ e with the matrix made last: a filter that keeps an error estimate from being governed by
+  /// components that the scheme damps [Hairer, Wanner 1996, IV.8]. Leaves e where there is no matrix yet.
+  virtual Status filter(double eta, VectorRef e) = 0;
 };
 
 /// For the whole right-hand side.

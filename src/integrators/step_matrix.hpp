@@ -35,6 +35,9 @@ class StepMatrix {
   const SparseMatrix& assemble_symmetric(double t, ConstVectorRef q, ConstVectorRef v, double h,
                                          TangentModel model);
 
+  /// K as it was assembled last.
+  const SparseMatrix& stiffness() const { return stiffness_; }
+
  private:
   const SecondOrderSystem& system_;
   const ForceSplitting* splitting_;  ///< null: the whole force

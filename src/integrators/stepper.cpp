@@ -25,7 +25,16 @@ Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_step
   const std::unique_ptr<Stepper> stepper = make_stepper(ivp, h, solution.work);
   Vector y = ivp.y0;
   HermiteInterpolant hermite(*ivp.system, solution.work);
-  const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) { hermite(t, out); };
+  auto* own_interpolant = dynamic_cast<AdaptiveStepper*>(stepper.get());
+  if (own_interpolant != nullptr && !own_interpolant->has_dense_output()) own_interpolant = nullptr;
+  double step_start = ivp.t0, step_length = h;
+  const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) {
+    if (own_interpolant != nullptr) {
+      own_interpolant->interpolate((t - step_start) / step_length, out);
+    } else {
+      hermite(t, out);
+    }
+  };
   const std::uint64_t total = count.total();
   for (std::uint64_t n = 0; n < total; ++n) {
     const double t = ivp.t0 + static_cast<double>(n) * h;
@@ -44,6 +53,8 @@ Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_step
     }
     ++solution.work.accepted_steps;
     hermite.set_step(t, t_next, solution.state, y);
+    step_start = t;
+    step_length = length;
     const bool go_on = observer.observe({n + 1, t_next, y, last, interpolate});
     solution.time = t_next;
     solution.state = y;

@@ -58,8 +58,8 @@ class FixedStepIntegrator final : public Integrator {
   ExtendedSolver extended_solver_;
 };
 
-/// The shared loop: every step of `control` with the stepper that `make_stepper` makes. Between steps the observer
-/// can interpolate by the cubic Hermite polynomial of both ends (it evaluates the right-hand side there, which
+/// The shared loop: every step of `control` with the stepper that `make_stepper` makes. Inside a step the observer
+/// can interpolate by the stepper's dense output or the cubic Hermite polynomial (slopes at both ends, which
 /// `Work` counts).
 Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp,
                          const FixedStep& control, Observer& observer);

@@ -14,6 +14,7 @@ MethodInfo tableau_info(const schemes::ButcherTableau& tableau, const std::strin
   info.is_adaptive = !tableau.b_embedded.empty();
   info.stages = tableau.stages();
   info.is_symplectic = schemes::is_symplectic(tableau);
+  info.is_symmetric = schemes::is_symmetric(tableau);
   const schemes::LinearStability stability = linear_stability(stability_function(tableau));
   info.is_a_stable = stability.is_a_stable;
   info.is_l_stable = stability.is_l_stable;

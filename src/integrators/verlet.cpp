@@ -69,6 +69,7 @@ std::unique_ptr<Integrator> make_verlet(VerletVelocity velocity) {
                   .stages = 1,
                   .is_multistep = true,
                   .is_symplectic = true,
+                  .is_symmetric = true,
                   .needs_second_order = true,
                   .formula = central
                                  ? "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_{n+1} - x_{n-1})/(2h))"

@@ -34,7 +34,9 @@ struct MethodInfo {
   bool is_adaptive = false;    ///< can choose its own steps from tolerances
   bool has_fixed_step = true;  ///< can run with a constant step
   int embedded_order = 0;      ///< order of the solution that the error estimate compares with; 0: none
-  bool is_symplectic = false;
+  bool is_symplectic = false;  ///< for forces f(t, q) that have a potential
+  bool is_symmetric = false;   ///< equal to its adjoint: reversible in time where the problem is
+  bool conserves_energy = false;  ///< of systems without damping, exactly
   bool is_a_stable = false;
   bool is_l_stable = false;
   bool needs_second_order = false;     ///< works on M q̈ = f(t, q, v) only

@@ -3,7 +3,7 @@
 #include "core/error.hpp"
 #include "integrators/average_vector_field.hpp"
 #include "integrators/discrete_gradient.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 
 namespace fw::integrators {
 namespace {

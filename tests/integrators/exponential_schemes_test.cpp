@@ -6,7 +6,7 @@
 #include "integrators/exponential_rosenbrock_euler.hpp"
 #include "integrators/gautschi.hpp"
 #include "integrators/krylov_phi.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 
 namespace fw::integrators {
 namespace {

@@ -2,7 +2,7 @@
 #include "integrators/discrete_gradient.hpp"
 #include "integrators/projective_dynamics.hpp"
 #include "integrators/xpbd.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 
 namespace fw::integrators {
 namespace {

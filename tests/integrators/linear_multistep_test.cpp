@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 #include "integrators/starting_steps.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 #include "schemes/multistep_formulas.hpp"
 
 namespace fw::integrators {

@@ -8,16 +8,19 @@
 
 #include "integrators/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/fully_implicit_runge_kutta.hpp"
 #include "integrators/implicit_euler_linearised.hpp"
 #include "integrators/nystrom.hpp"
+#include "integrators/rosenbrock.hpp"
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/random_model.hpp"
 #include "schemes/explicit_tableaus.hpp"
-#include "schemes/nystrom_tableaus.hpp"
-#include "schemes/splitting_schemes.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "schemes/nystrom_tableaus.hpp"
+#include "schemes/rosenbrock_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
 
 namespace fw::integrators {
 
@@ -104,6 +107,12 @@ inline std::vector<std::unique_ptr<Integrator>> all_schemes() {
   list.push_back(make_verlet(VerletVelocity::backward));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(make_diagonally_implicit_runge_kutta(tableau));
+  }
+  for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
+    list.push_back(make_fully_implicit_runge_kutta(tableau));
+  }
+  for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
+    list.push_back(make_rosenbrock(tableau));
   }
   for (auto kind : {linalg::LinearSolverKind::conjugate_gradient, linalg::LinearSolverKind::sparse_cholesky,
                     linalg::LinearSolverKind::sparse_lu}) {

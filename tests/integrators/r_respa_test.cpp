@@ -1,7 +1,7 @@
 #include "integrators/r_respa.hpp"
 
 #include "core/error.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 
 namespace fw::integrators {
 namespace {

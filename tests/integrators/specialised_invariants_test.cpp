@@ -9,7 +9,7 @@
 #include "integrators/projective_dynamics.hpp"
 #include "integrators/r_respa.hpp"
 #include "integrators/xpbd.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 #include "schemes/multistep_formulas.hpp"
 
 namespace fw::integrators {

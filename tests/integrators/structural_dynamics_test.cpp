@@ -3,7 +3,7 @@
 #include "integrators/generalised_alpha.hpp"
 #include "integrators/hht_alpha.hpp"
 #include "integrators/newmark.hpp"
-#include "order_measurement.hpp"
+#include "order_levels.hpp"
 
 namespace fw::integrators {
 namespace {

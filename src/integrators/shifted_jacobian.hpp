@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "core/work.hpp"
+#include "linalg/linear_solver.hpp"
+#include "ode/ode_system.hpp"
+
+namespace fw::integrators {
+
+/// The matrix I − ηJ at a state, factorised by KLU. On a second-order system it is reduced to half its size:
+///   x_q − η x_v = r_q,   (M − ηD − η²K) x_v = M r_v + η K r_q.
+class ShiftedJacobian {
+ public:
+  virtual ~ShiftedJacobian() = default;
+
+  /// Evaluates J at (t, y) and factorises.
+  virtual Status factorise(double t, ConstVectorRef y, double eta) = 0;
+
+  /// r ← (I − ηJ)⁻¹ r. Fixed degrees of freedom become exactly zero.
+  virtual Status solve(VectorRef r) = 0;
+};
+
+std::unique_ptr<ShiftedJacobian> make_shifted_jacobian(const OdeSystem& system, Work& work);
+
+}  // namespace fw::integrators
