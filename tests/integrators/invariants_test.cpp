@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "allocation_counter.hpp"
+#include "integrators/runge_kutta_chebyshev.hpp"
 #include "network.hpp"
 
 namespace fw::integrators {
@@ -106,8 +107,8 @@ TEST(Schemes, GiveTheSameBitsWhenRunTwice) {
   }
 }
 
-std::size_t allocations_per_run(const Integrator& scheme, int steps) {
-  const Ivp ivp = random_network(26, {}, steps / 1024.0);
+std::size_t allocations_per_run(const Integrator& scheme, int steps, bool damped = true) {
+  const Ivp ivp = random_network(26, {.is_damped = damped}, steps / 1024.0);
   return allocations_of([&] { run(scheme, ivp, 1.0 / 1024.0); });
 }
 
@@ -116,6 +117,15 @@ TEST(Schemes, AllocateNothingAfterTheFirstStep) {
   schemes.erase(schemes.end() - 2);  // Cholesky: Eigen's factorisation takes work space of its own each time
   for (const auto& scheme : schemes) {
     EXPECT_EQ(allocations_per_run(*scheme, 264), allocations_per_run(*scheme, 8)) << scheme->info().name;
+  }
+  for (const schemes::NystromTableau& tableau : schemes::nystrom_tableaus()) {
+    const auto scheme = make_nystrom(tableau);
+    EXPECT_EQ(allocations_per_run(*scheme, 264, false), allocations_per_run(*scheme, 8, false))
+        << tableau.name;
+  }
+  for (const int stages : {0, 8}) {
+    const auto scheme = make_runge_kutta_chebyshev({.order = 2, .stages = stages});
+    EXPECT_EQ(allocations_per_run(*scheme, 264), allocations_per_run(*scheme, 8)) << stages;
   }
 }
 

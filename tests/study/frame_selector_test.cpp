@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "catalog/methods.hpp"
 #include "core/error.hpp"
-#include "integrators/velocity_verlet.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "problems/oscillators.hpp"
 
@@ -34,7 +34,7 @@ Frames frames_of(const Integrator& integrator, const StepControl& control, std::
 
 TEST(FrameSelector, TakesTheStepTimesNearestToAnEqualSpacing) {
   const FixedStep control{.step = 0.01};
-  const Frames frames = frames_of(*integrators::make_velocity_verlet(), control, 7, 1.0);
+  const Frames frames = frames_of(*catalog::make_method("velocity_verlet"), control, 7, 1.0);
   ASSERT_EQ(frames.times.size(), 7u);
   EXPECT_EQ(frames.times.front(), 0.0);
   EXPECT_EQ(frames.times.back(), 1.0);
@@ -45,7 +45,8 @@ TEST(FrameSelector, TakesTheStepTimesNearestToAnEqualSpacing) {
 }
 
 TEST(FrameSelector, StoresEveryStateOnceWhereThereAreFewerStepsThanFrames) {
-  const Frames frames = frames_of(*integrators::make_velocity_verlet(), FixedStep{.step = 0.25}, 101, 1.0);
+  const Frames frames =
+      frames_of(*catalog::make_method("velocity_verlet"), FixedStep{.step = 0.25}, 101, 1.0);
   EXPECT_EQ(frames.times, (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
 }
 
@@ -53,7 +54,7 @@ TEST(FrameSelector, StoresEveryStateForEveryCountOfSteps) {
   for (std::uint64_t steps = 1; steps <= 60; ++steps) {
     for (std::uint64_t count : {steps + 1, steps, steps / 2 + 2}) {
       if (count < 2) continue;
-      const Frames frames = frames_of(*integrators::make_velocity_verlet(),
+      const Frames frames = frames_of(*catalog::make_method("velocity_verlet"),
                                       FixedStep{.step = 1.0 / static_cast<double>(steps)}, count, 1.0);
       ASSERT_EQ(frames.times.size(), std::min(count, steps + 1)) << steps << " steps, " << count << " frames";
       EXPECT_EQ(frames.times.back(), 1.0);
@@ -62,7 +63,7 @@ TEST(FrameSelector, StoresEveryStateForEveryCountOfSteps) {
 }
 
 TEST(FrameSelector, KeepsTheEndOfAShorterLastStep) {
-  const Frames frames = frames_of(*integrators::make_velocity_verlet(), FixedStep{.step = 0.3}, 101, 1.0);
+  const Frames frames = frames_of(*catalog::make_method("velocity_verlet"), FixedStep{.step = 0.3}, 101, 1.0);
   ASSERT_EQ(frames.times.size(), 5u);
   EXPECT_EQ(frames.times.back(), 1.0);
 }
