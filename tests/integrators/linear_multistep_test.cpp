@@ -26,12 +26,12 @@ struct Levels {
 Levels mechanical_levels(const Integrator& scheme) {
   const int order = scheme.info().order;
   if (order <= 4) return {250, std::numbers::sqrt2};
-  return order == 5 ? Levels{350, std::pow(2.0, 0.25)} : Levels{210, std::pow(2.0, 0.17)};
+  return order == 5 ? Levels{350, std::pow(2.0, 0.25)} : Levels{170, std::pow(2.0, 0.2)};
 }
 Levels first_order_levels(const Integrator& scheme) {
   const int order = scheme.info().order;
   if (order <= 4) return {250, std::numbers::sqrt2};
-  return {order == 5 ? 150 : 95, std::pow(2.0, 0.2)};
+  return order == 5 ? Levels{150, std::pow(2.0, 0.2)} : Levels{70, std::pow(2.0, 0.25)};
 }
 
 TEST(LinearMultistep, ConvergesWithTheOrderOfItsFormulaOnMechanicalSystems) {
