@@ -194,10 +194,11 @@ inline std::vector<SeededBug> wrong_algorithms() {
   const char* order = "order, forces f(t, q)";
   const char* damped_order = "order, forces f(t, q, v)";
   std::vector<SeededBug> bugs;
+  // One correction from the old velocity leaves a scheme that is still symmetric and of order 2.
   bugs.push_back(hand_written_bug(
       "midpoint_one_newton_iteration", "Newton's iteration stopped after the first correction",
       "implicit_midpoint", [](bool mutated) { return midpoint_with_newton_iterations(mutated ? 1 : 30); },
-      {"symplectic", "reversible in time"}));
+      {"symplectic"}));
   bugs.push_back(code_bug("midpoint_loose_newton", "Newton's tolerance 1e-3", "implicit_midpoint",
                           [] {
                             return integrators::make_diagonally_implicit_runge_kutta(

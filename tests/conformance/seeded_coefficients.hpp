@@ -90,8 +90,9 @@ inline std::vector<SeededBug> wrong_coefficients_in_the_code() {
       "dormand_prince_54", run_explicit, [](ButcherTableau& t) { shift(t.dense[3][1], "1/200"); },
       {"dense output"}));
   bugs.push_back(coefficient_bug<ButcherTableau>(
-      "gauss2_wrong_surd_sign", "a_12 = 1/4 + sqrt(3)/6", "gauss2", run_implicit,
-      [](ButcherTableau& t) { t.A[0][1] = "1/4+sqrt(3)/6"; }, {order, flow_order, tableau, stability}));
+      "gauss3_wrong_surd_sign", "a_13 = 5/36 + sqrt(15)/30", "gauss3", run_implicit,
+      [](ButcherTableau& t) { t.A[0][2] = "5/36+sqrt(15)/30"; },
+      {order, damped_order, flow_order, tableau, stability, "symplectic", "reversible in time"}));
   bugs.push_back(coefficient_bug<ButcherTableau>(
       "trapezoidal_uneven_weights", "0.49 and 0.51 for 1/2 and 1/2", "trapezoidal", run_diagonal,
       [](ButcherTableau& t) {
@@ -180,9 +181,9 @@ inline std::vector<SeededBug> wrong_coefficients_in_the_data() {
                                "two entries of b^ exchanged", "bogacki_shampine_32", run_explicit,
                                [](ButcherTableau& t) { std::swap(t.b_embedded[1], t.b_embedded[2]); },
                                {"order of the error estimate"}));
-  bugs.push_back(data_bug<ButcherTableau>("listed_gauss2_with_wrong_surd", "a_12 = 1/4 + sqrt(3)/6", "gauss2",
-                                          run_implicit,
-                                          [](ButcherTableau& t) { t.A[0][1] = "1/4+sqrt(3)/6"; },
+  bugs.push_back(data_bug<ButcherTableau>("listed_gauss3_with_wrong_surd", "a_13 = 5/36 + sqrt(15)/30",
+                                          "gauss3", run_implicit,
+                                          [](ButcherTableau& t) { t.A[0][2] = "5/36+sqrt(15)/30"; },
                                           {order, flow_order, "symplectic", "reversible in time"}));
   bugs.push_back(data_bug<SplittingScheme>(
       "listed_forest_ruth_with_a_wrong_digit", "theta wrong in its sixth digit", "forest_ruth", run_splitting,
