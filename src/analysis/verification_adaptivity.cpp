@@ -15,8 +15,6 @@ namespace fw::analysis {
 
 namespace {
 
-using ProblemFunction = const Ivp& (*)();
-
 std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems) {
   std::vector<ProblemFunction> result;
   for (const ProblemFunction problem : problems) {
@@ -30,6 +28,20 @@ std::optional<double> local_slope(const std::vector<double>& steps, const std::v
   const OrderFit fit = fit_order(steps, values, floor, 0.15);
   if (!fit.valid) return std::nullopt;
   return fit.order;
+}
+
+/// Least squares slope of log error over log tolerance: all points, since step selection scatters them.
+double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-300));
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 double relative_error(ConstVectorRef y, const std::vector<Float128>& exact) {
@@ -98,7 +110,7 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
   }
   const Ivp& ivp = problems.front()();
   std::vector<double> steps, estimates;
-  for (double h = 0.8; h > 1e-3; h *= 0.75) {
+  for (double h = 0.8; h > 1e-4; h *= 0.88) {
     Work work;
     const auto stepper = adaptive->make_stepper(ivp, work);
     Vector y_new(ivp.y0.size()), error(ivp.y0.size());
@@ -112,7 +124,7 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (derived.embedded_order) check.derived = fmt::format("h^{}", std::min(*derived.order, *derived.embedded_order) + 1);
   check.measured = slope ? fmt::format("{:.2f}", *slope) : "no asymptotic range";
-  check.finding = slope && std::abs(*slope - expected) <= 0.2 ? Finding::holds : Finding::fails;
+  check.finding = slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Finding::holds : Finding::fails;
   if (derived.embedded_order && check.derived != check.claimed) check.finding = Finding::fails;
   checks.push_back(check);
 }
@@ -121,15 +133,15 @@ void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyChec
   PropertyCheck check{.property = "dense output"};
   const MethodInfo& info = scheme.integrator.info();
   const auto problems = applicable(info, {first_order_flow, damped_oscillators, driven_oscillators, spring_network});
-  if (problems.empty() || !info.has_fixed_step || info.is_multistep) {
-    check.reason = "one-step schemes only";
+  if (problems.empty() || !info.has_fixed_step || info.is_multistep || info.carries_more_than_state) {
+    check.reason = "schemes whose single step says all only";
     checks.push_back(check);
     return;
   }
   const Ivp& ivp = problems.front()();
   constexpr double theta = 0.375;
   std::vector<double> steps, errors;
-  for (double h = 0.8; h > 2e-3; h *= 0.75) {
+  for (double h = 0.8; h > 2e-4; h *= 0.75) {
     Ivp step = ivp;
     step.t1 = ivp.t0 + h;
     SingleStep observer(theta, ivp.y0.size());
@@ -165,39 +177,37 @@ void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector
   const double expected =
       static_cast<double>(info.order) / static_cast<double>(std::min(info.order, info.embedded_order) + 1);
   PropertyCheck check{.property = property, .claimed = fmt::format("tol^{:.2f}", expected), .finding = Finding::holds};
-  for (const ProblemFunction problem : applicable(
-           info, {first_order_flow, damped_oscillators, damped_spring_network, driven_oscillators, spring_network})) {
+  // Long enough for many steps of a high order at a loose tolerance, short enough for a low order at a tight one.
+  const double length = info.order >= 5 ? 12.0 : 3.0;
+  int problems = 0;
+  for (const ProblemFunction problem : applicable(info, {damped_oscillators, driven_oscillators,
+                                                         conservative_oscillators, damped_spring_network,
+                                                         spring_network})) {
+    if (++problems > 3) break;
     std::vector<double> tolerances, errors;
     double worst = 0.0;
     Status status;
     for (double tolerance = 1e-3; tolerance > 0.9e-10; tolerance /= std::sqrt(10.0)) {
       NullObserver observer;
-      const Solution solution = scheme.integrator.solve(
-          problem(), AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
+      const Solution solution =
+          scheme.integrator.solve(lengthened(problem, length),
+                                  AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
       if (!solution.status.ok()) {
         status = solution.status;
         continue;
       }
-      const double error = relative_error(solution.state, certified_end(problem).value);
-      tolerances.push_back(std::log(tolerance));
-      errors.push_back(std::log(std::max(error, 1e-300)));
-      worst = std::max(worst, error / tolerance);
+      const double error =
+          relative_error(solution.state, certified_end_of_lengthened(problem, length).value);
+      tolerances.push_back(tolerance);
+      errors.push_back(error);
+      worst = std::max(worst, error / std::pow(tolerance, expected));
     }
-    const double n = static_cast<double>(errors.size());
-    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      sx += tolerances[i];
-      sy += errors[i];
-      sxx += tolerances[i] * tolerances[i];
-      sxy += tolerances[i] * errors[i];
-    }
-    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-    check.measured += fmt::format("{}{:.2f} (<= {:.1f} tol)", check.measured.empty() ? "" : ", ", slope, worst);
-    if (!status.ok() || !(std::abs(slope - expected) <= 0.25) || !(worst <= 100.0)) {
+    const double slope = logarithmic_slope(tolerances, errors);
+    check.measured += fmt::format("{}{:.2f} (C {:.1f})", check.measured.empty() ? "" : ", ", slope, worst);
+    if (!status.ok() || !(std::abs(slope - expected) <= 0.3 * expected) || !(worst <= 1000.0)) {
       check.finding = Finding::fails;
       if (!status.ok()) check.reason = status.describe();
     }
-    if (std::count(check.measured.begin(), check.measured.end(), '(') == 3) break;
   }
   checks.push_back(check);
 }
