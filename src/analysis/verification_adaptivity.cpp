@@ -261,6 +261,7 @@ std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme) {
   verify_order(scheme, checks);
   verify_error_estimate(scheme, checks);
   verify_dense_output(scheme, checks);
+  verify_step_control(scheme, checks);
   verify_tolerance_proportionality(scheme, checks);
   verify_polynomial_exactness(scheme, checks);
   verify_tableau(scheme, checks);

@@ -146,6 +146,36 @@ void check_momentum(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
   checks.push_back(check);
 }
 
+/// A fixed particle stays where it is to the last bit, whatever acts on it.
+void check_fixed_particles(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
+  PropertyCheck check{.property = "fixed particles"};
+  const Ivp* problem = nullptr;
+  for (const Ivp* ivp : {&damped_spring_network(), &spring_network()}) {
+    if (why_not_applicable(scheme.integrator.info(), *ivp->system).empty()) {
+      problem = ivp;
+      break;
+    }
+  }
+  if (problem == nullptr) {
+    check.reason = "the scheme does not run on spring networks";
+    checks.push_back(check);
+    return;
+  }
+  const Solution solution = run(scheme.integrator, shortened(*problem, 0.03125, 32), 0.03125);
+  const std::vector<char>& fixed = problem->system->second_order()->fixed();
+  const auto n = static_cast<Index>(fixed.size());
+  double moved = 0.0;
+  for (Index i = 0; i < n; ++i) {
+    if (fixed[static_cast<std::size_t>(i)] == 0) continue;
+    for (const Index k : {i, n + i}) moved = std::max(moved, std::abs(solution.state[k] - problem->y0[k]));
+  }
+  check.claimed = "at rest";
+  check.measured = fmt::format("moved by {:.1e}", moved);
+  check.finding = solution.status.ok() && moved == 0.0 ? Finding::holds : Finding::fails;
+  if (!solution.status.ok()) check.reason = solution.status.describe();
+  checks.push_back(check);
+}
+
 void check_energy(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
   PropertyCheck check{.property = "energy"};
@@ -266,6 +296,7 @@ void verify_reversibility(const SchemeUnderTest& scheme, std::vector<PropertyChe
 void verify_conservation(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   if (!scheme.integrator.info().has_fixed_step) return;
   check_momentum(scheme, checks);
+  check_fixed_particles(scheme, checks);
   check_energy(scheme, checks);
 }
 

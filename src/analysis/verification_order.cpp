@@ -179,6 +179,38 @@ void check_order(const SchemeUnderTest& scheme, const char* property, int claime
   checks.push_back(judge(property, claimed, derived, measurement));
 }
 
+/// The run in binary128 shows the order of the code in double only if both are the same scheme: they have to
+/// agree to rounding and to what iterative solvers leave.
+void check_extended_twin(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
+  PropertyCheck check{.property = "double and binary128 agree"};
+  const MethodInfo& info = scheme.integrator.info();
+  if (!scheme.integrator.extended_solver() || !info.has_fixed_step) {
+    check.reason = "double only";
+    checks.push_back(check);
+    return;
+  }
+  double largest = 0.0;
+  for (const ProblemFunction problem : {driven_oscillators, damped_oscillators, first_order_flow}) {
+    const Ivp& ivp = problem();
+    if (!why_not_applicable(info, *ivp.system).empty()) continue;
+    constexpr std::uint64_t count = 24;
+    NullObserver observer;
+    const Solution solution = scheme.integrator.solve(
+        ivp, FixedStep{.step = (ivp.t1 - ivp.t0) / count, .allow_short_last_step = false}, observer);
+    if (!solution.status.ok()) check.reason = solution.status.describe();
+    const std::vector<Float128> state(solution.state.begin(), solution.state.end());
+    const Errors errors = errors_of(*ivp.system, state, scheme.integrator.extended_solver()(ivp, count));
+    largest = std::max({largest, errors.position, errors.velocity});
+  }
+  constexpr double rounding = 1e-12;
+  check.claimed = "the same scheme";
+  check.measured = fmt::format("differ by {:.1e}", largest);
+  check.finding = check.reason.empty() && largest <= std::max(rounding, 10.0 * info.iteration_tolerance)
+                      ? Finding::holds
+                      : Finding::fails;
+  checks.push_back(check);
+}
+
 }  // namespace
 
 void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
@@ -188,6 +220,7 @@ void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& che
   check_order(scheme, "order, forces f(t, q, v)", info.order_with_velocity_forces, derived.order_with_velocity_forces,
               {damped_oscillators, damped_spring_network}, checks);
   check_order(scheme, "order, y' = f(t, y)", info.order, derived.order, {first_order_flow}, checks);
+  check_extended_twin(scheme, checks);
 }
 
 }  // namespace fw::analysis
