@@ -40,7 +40,7 @@ void check_shorter_last_step(const SchemeUnderTest& scheme, ProblemFunction prob
   const MethodInfo& info = scheme.integrator.info();
   PropertyCheck check{.property = "shorter last step"};
   const Ivp& ivp = problem();
-  const Vector exact = in_double(certified_end(problem).value);
+  const Vector exact = in_double(certified_end(problem, 0).value);
   const auto solve = [&](double steps) {
     NullObserver observer;
     return scheme.integrator.solve(ivp, FixedStep{.step = (ivp.t1 - ivp.t0) / steps}, observer);
@@ -122,7 +122,7 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
       check.reason = "an attempt after a rejected one is another step";
     }
   }
-  const Vector exact = in_double(certified_end(problem).value);
+  const Vector exact = in_double(certified_end(problem, 0).value);
   constexpr double tolerance = 1e-8, factor = 10.0;
   const auto solve = [&](double initial_step) {
     NullObserver observer;
