@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "analysis/gragg_extrapolation.hpp"
 #include "analysis/order_fit.hpp"
@@ -23,9 +24,16 @@ std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer
   return result;
 }
 
-/// Least squares slope of log value over log step on the points between floor and ceiling.
+/// The order of values at falling steps. Single steps of coarse size may do anything, so the range begins where values
+/// fall from there on down to the floor.
 std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values, double floor) {
-  const OrderFit fit = fit_order(steps, values, floor, 0.15);
+  std::size_t end = 0;
+  while (end < values.size() && !(values[end] <= floor)) ++end;
+  std::size_t begin = end > 0 ? end - 1 : 0;
+  while (begin > 0 && values[begin - 1] > values[begin]) --begin;
+  const std::span<const double> all_steps(steps), all_values(values);
+  const OrderFit fit =
+      fit_order(all_steps.subspan(begin, end - begin), all_values.subspan(begin, end - begin), floor, 0.15);
   if (!fit.valid) return std::nullopt;
   return fit.order;
 }

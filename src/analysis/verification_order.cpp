@@ -52,8 +52,8 @@ class OrderMeasurement {
   void run() {
     // High orders cross the range above the floor in few steps: finer levels there.
     const double ratio = expected_ >= 4 ? 1.15 : 1.3;
-    const double floor = extended_ ? std::max(1e-22, 100.0 * relative_reference_error()) : 2e-12;
-    const double most_steps = extended_ ? 1500.0 : 30000.0;
+    const double floor = extended_ ? std::max(1e-27, 100.0 * relative_reference_error()) : 2e-12;
+    const double most_steps = extended_ ? 3000.0 : 30000.0;
     constexpr double fewest_steps = 300.0;
     int at_floor = 0;
     double last_count = 0.0;
@@ -90,7 +90,7 @@ class OrderMeasurement {
       least = std::min(least, slope);
       most = std::max(most, slope);
     }
-    return std::abs(most - least) < 0.5 * slope_tolerance;  // false for NaN
+    return std::abs(most - least) < 0.2 * slope_tolerance;  // false for NaN
   }
 
   double relative_reference_error() const {
