@@ -12,17 +12,6 @@ namespace fw::analysis {
 
 namespace {
 
-using ProblemFunction = const Ivp& (*)();
-
-/// The first problem that the scheme runs on; null if there is none.
-ProblemFunction applicable(const MethodInfo& info) {
-  for (const ProblemFunction problem :
-       {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network}) {
-    if (why_not_applicable(info, *problem().system).empty()) return problem;
-  }
-  return nullptr;
-}
-
 double relative_difference(ConstVectorRef a, ConstVectorRef b) {
   return (a - b).lpNorm<Eigen::Infinity>() / b.lpNorm<Eigen::Infinity>();
 }
@@ -150,7 +139,9 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
 
 void verify_step_control(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
-  const ProblemFunction problem = applicable(info);
+  const ProblemFunction problem = first_applicable(
+      info,
+      {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network});
   if (problem == nullptr || !info.has_fixed_step) {
     checks.push_back({.property = "shorter last step", .reason = "the scheme has no constant steps"});
     return;
