@@ -38,12 +38,16 @@ struct SchemeUnderTest {
 std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme);
 
 /// The single parts of `verify`; each appends its findings.
-/// Order for f(t, q), for f(t, q, v) and for ẏ = f(t, y), observed on nonlinear non-autonomous problems with masses
-/// other than 1, positions and velocities apart; in binary128 for orders that double cannot show.
+/// Order for f(t, q), for f(t, q, v) and for ẏ = f(t, y), observed on nonlinear non-autonomous problems with
+/// masses other than 1, positions and velocities apart; in binary128 for orders that double cannot show.
+/// Where there is a run in binary128, that it is the same scheme as the one in double.
 void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// Orders of the error estimate and of dense output, from single steps against certified solutions.
 void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// The shorter last step where the interval is no whole number of steps (multistep schemes have to refuse
+/// it), steps that are rejected and tried again, and that an attempt makes the same step as a constant step.
+void verify_step_control(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// Measured error against tolerance over 1e-3 … 1e-10 on three problems.
 void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// R(hJ) from the coefficients against one black-box step, as first-order and as second-order system; for multistep
@@ -61,7 +65,8 @@ void verify_tableau(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
 void verify_symplecticity(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// n steps, reversed velocities, n steps: the distance from the start in units in the last place.
 void verify_reversibility(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
-/// Linear momentum of a free spring network, energy of symplectic and of energy-conserving schemes.
+/// Linear momentum of a free spring network, fixed particles at rest, energy of symplectic and of
+/// energy-conserving schemes.
 void verify_conservation(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// The end state against the oracle's, within both error estimates.
 void verify_agreement(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);

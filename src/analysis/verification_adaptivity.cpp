@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "analysis/gragg_extrapolation.hpp"
 #include "analysis/order_fit.hpp"
@@ -15,8 +16,6 @@ namespace fw::analysis {
 
 namespace {
 
-using ProblemFunction = const Ivp& (*)();
-
 std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems) {
   std::vector<ProblemFunction> result;
   for (const ProblemFunction problem : problems) {
@@ -25,11 +24,32 @@ std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer
   return result;
 }
 
-/// Least squares slope of log value over log step on the points between floor and ceiling.
+/// The order of values at falling steps. Single steps of coarse size may do anything, so the range begins where values
+/// fall from there on down to the floor.
 std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values, double floor) {
-  const OrderFit fit = fit_order(steps, values, floor, 0.15);
+  std::size_t end = 0;
+  while (end < values.size() && !(values[end] <= floor)) ++end;
+  std::size_t begin = end > 0 ? end - 1 : 0;
+  while (begin > 0 && values[begin - 1] > values[begin]) --begin;
+  const std::span<const double> all_steps(steps), all_values(values);
+  const OrderFit fit =
+      fit_order(all_steps.subspan(begin, end - begin), all_values.subspan(begin, end - begin), floor, 0.15);
   if (!fit.valid) return std::nullopt;
   return fit.order;
+}
+
+/// Least squares slope of log error over log tolerance: all points, since step selection scatters them.
+double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-300));
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 double relative_error(ConstVectorRef y, const std::vector<Float128>& exact) {
@@ -89,9 +109,16 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
     checks.push_back(check);
     return;
   }
-  const Ivp& ivp = applicable(info, {damped_oscillators, driven_oscillators, first_order_flow}).front()();
+  const auto problems = applicable(
+      info, {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network});
+  if (problems.empty()) {
+    check.reason = "no problem for it";
+    checks.push_back(check);
+    return;
+  }
+  const Ivp& ivp = problems.front()();
   std::vector<double> steps, estimates;
-  for (double h = 0.8; h > 1e-3; h *= 0.75) {
+  for (double h = 0.8; h > 1e-4; h *= 0.88) {
     Work work;
     const auto stepper = adaptive->make_stepper(ivp, work);
     Vector y_new(ivp.y0.size()), error(ivp.y0.size());
@@ -105,7 +132,7 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (derived.embedded_order) check.derived = fmt::format("h^{}", std::min(*derived.order, *derived.embedded_order) + 1);
   check.measured = slope ? fmt::format("{:.2f}", *slope) : "no asymptotic range";
-  check.finding = slope && std::abs(*slope - expected) <= 0.2 ? Finding::holds : Finding::fails;
+  check.finding = slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Finding::holds : Finding::fails;
   if (derived.embedded_order && check.derived != check.claimed) check.finding = Finding::fails;
   checks.push_back(check);
 }
@@ -114,15 +141,15 @@ void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyChec
   PropertyCheck check{.property = "dense output"};
   const MethodInfo& info = scheme.integrator.info();
   const auto problems = applicable(info, {first_order_flow, damped_oscillators, driven_oscillators, spring_network});
-  if (problems.empty() || !info.has_fixed_step || info.is_multistep) {
-    check.reason = "one-step schemes only";
+  if (problems.empty() || !info.has_fixed_step || info.is_multistep || info.carries_more_than_state) {
+    check.reason = "schemes whose single step says all only";
     checks.push_back(check);
     return;
   }
   const Ivp& ivp = problems.front()();
   constexpr double theta = 0.375;
   std::vector<double> steps, errors;
-  for (double h = 0.8; h > 2e-3; h *= 0.75) {
+  for (double h = 0.8; h > 2e-4; h *= 0.75) {
     Ivp step = ivp;
     step.t1 = ivp.t0 + h;
     SingleStep observer(theta, ivp.y0.size());
@@ -158,39 +185,37 @@ void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector
   const double expected =
       static_cast<double>(info.order) / static_cast<double>(std::min(info.order, info.embedded_order) + 1);
   PropertyCheck check{.property = property, .claimed = fmt::format("tol^{:.2f}", expected), .finding = Finding::holds};
-  for (const ProblemFunction problem : applicable(
-           info, {first_order_flow, damped_oscillators, damped_spring_network, driven_oscillators, spring_network})) {
+  // Long enough for many steps of a high order at a loose tolerance, short enough for a low order at a tight one.
+  const double length = info.order >= 5 ? 12.0 : 3.0;
+  int problems = 0;
+  for (const ProblemFunction problem : applicable(info, {damped_oscillators, driven_oscillators,
+                                                         conservative_oscillators, damped_spring_network,
+                                                         spring_network})) {
+    if (++problems > 3) break;
     std::vector<double> tolerances, errors;
     double worst = 0.0;
     Status status;
     for (double tolerance = 1e-3; tolerance > 0.9e-10; tolerance /= std::sqrt(10.0)) {
       NullObserver observer;
-      const Solution solution = scheme.integrator.solve(
-          problem(), AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
+      const Solution solution =
+          scheme.integrator.solve(lengthened(problem, length),
+                                  AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
       if (!solution.status.ok()) {
         status = solution.status;
         continue;
       }
-      const double error = relative_error(solution.state, certified_end(problem).value);
-      tolerances.push_back(std::log(tolerance));
-      errors.push_back(std::log(std::max(error, 1e-300)));
-      worst = std::max(worst, error / tolerance);
+      const double error =
+          relative_error(solution.state, certified_end_of_lengthened(problem, length).value);
+      tolerances.push_back(tolerance);
+      errors.push_back(error);
+      worst = std::max(worst, error / std::pow(tolerance, expected));
     }
-    const double n = static_cast<double>(errors.size());
-    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      sx += tolerances[i];
-      sy += errors[i];
-      sxx += tolerances[i] * tolerances[i];
-      sxy += tolerances[i] * errors[i];
-    }
-    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-    check.measured += fmt::format("{}{:.2f} (<= {:.1f} tol)", check.measured.empty() ? "" : ", ", slope, worst);
-    if (!status.ok() || !(std::abs(slope - expected) <= 0.25) || !(worst <= 100.0)) {
+    const double slope = logarithmic_slope(tolerances, errors);
+    check.measured += fmt::format("{}{:.2f} (C {:.1f})", check.measured.empty() ? "" : ", ", slope, worst);
+    if (!status.ok() || !(std::abs(slope - expected) <= 0.3 * expected) || !(worst <= 1000.0)) {
       check.finding = Finding::fails;
       if (!status.ok()) check.reason = status.describe();
     }
-    if (std::count(check.measured.begin(), check.measured.end(), '(') == 3) break;
   }
   checks.push_back(check);
 }
@@ -236,6 +261,7 @@ std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme) {
   verify_order(scheme, checks);
   verify_error_estimate(scheme, checks);
   verify_dense_output(scheme, checks);
+  verify_step_control(scheme, checks);
   verify_tolerance_proportionality(scheme, checks);
   verify_polynomial_exactness(scheme, checks);
   verify_tableau(scheme, checks);

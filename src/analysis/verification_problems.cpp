@@ -167,19 +167,85 @@ const Ivp& free_spring_network() {
   return ivp;
 }
 
-const ReferenceState& certified_end(const Ivp& (*problem)()) {
-  static std::mutex mutex;
-  static std::map<const Ivp& (*)(), ReferenceState> known;
-  const std::lock_guard lock(mutex);
-  auto found = known.find(problem);
-  if (found == known.end()) {
-    const ReferenceSolution reference = certified_reference(problem(), problem().t1);
-    if (!reference.status.ok()) {
-      throw std::logic_error("the reference of a verification problem failed: " + reference.status.describe());
-    }
-    found = known.emplace(problem, reference.states.front()).first;
+ProblemFunction first_applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems) {
+  for (const ProblemFunction problem : problems) {
+    if (why_not_applicable(info, *problem().system).empty()) return problem;
   }
-  return found->second;
+  return nullptr;
+}
+
+namespace {
+
+struct CertifiedProblem {
+  Ivp ivp;
+  ReferenceState end;
+};
+
+CertifiedProblem certified(Ivp ivp) {
+  const ReferenceSolution reference = certified_reference(ivp, ivp.t1);
+  if (!reference.status.ok()) {
+    throw std::logic_error("the reference of a verification problem failed: " + reference.status.describe());
+  }
+  return {std::move(ivp), reference.states.front()};
+}
+
+/// Problems with their references, made once and kept; `make` gives the initial value problem of a key.
+template <class Key>
+class CertifiedProblems {
+ public:
+  template <class Make>
+  const CertifiedProblem& get(const Key& key, Make make) {
+    const std::lock_guard lock(mutex_);
+    auto found = known_.find(key);
+    if (found == known_.end()) found = known_.emplace(key, certified(make())).first;
+    return found->second;  // nodes of a map stay where they are
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<Key, CertifiedProblem> known_;
+};
+
+const CertifiedProblem& member_of(ProblemFunction problem, int member) {
+  static CertifiedProblems<std::pair<ProblemFunction, int>> problems;
+  return problems.get({problem, member}, [&] {
+    Ivp ivp = problem();
+    const SecondOrderSystem* second_order = ivp.system->second_order();
+    for (Index i = 0; i < ivp.y0.size(); ++i) {
+      const bool fixed = second_order != nullptr &&
+                         second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
+      // Multiples of 1/64, exact in binary.
+      if (!fixed) ivp.y0[i] += 0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
+    }
+    return ivp;
+  });
+}
+
+const CertifiedProblem& lengthened_problem(ProblemFunction problem, double length) {
+  static CertifiedProblems<std::pair<ProblemFunction, double>> problems;
+  return problems.get({problem, length}, [&] {
+    Ivp ivp = problem();
+    ivp.t1 = ivp.t0 + length;
+    return ivp;
+  });
+}
+
+}  // namespace
+
+const Ivp& ensemble_member(ProblemFunction problem, int member) {
+  return member_of(problem, member).ivp;
+}
+
+const ReferenceState& certified_end(ProblemFunction problem, int member) {
+  return member_of(problem, member).end;
+}
+
+const Ivp& lengthened(ProblemFunction problem, double length) {
+  return lengthened_problem(problem, length).ivp;
+}
+
+const ReferenceState& certified_end_of_lengthened(ProblemFunction problem, double length) {
+  return lengthened_problem(problem, length).end;
 }
 
 }  // namespace fw::analysis

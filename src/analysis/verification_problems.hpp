@@ -1,8 +1,10 @@
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 
 #include "analysis/reference_solution.hpp"
+#include "ode/integrator.hpp"
 #include "ode/ivp.hpp"
 
 namespace fw::analysis {
@@ -26,7 +28,19 @@ const Ivp& damped_spring_network();
 /// Free of gravity, drag and fixed particles: momentum is conserved.
 const Ivp& free_spring_network();
 
-/// The certified end state of one of these, computed once per process.
-const ReferenceState& certified_end(const Ivp& (*problem)());
+using ProblemFunction = const Ivp& (*)();
+
+/// The first of these that the scheme can run on; null if there is none.
+ProblemFunction first_applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems);
+
+/// A problem from several initial states: in one of them an error coefficient may happen to vanish, hardly in all.
+inline constexpr int ensemble_size = 3;
+const Ivp& ensemble_member(ProblemFunction problem, int member);
+/// The certified end state of a member, computed once per process.
+const ReferenceState& certified_end(ProblemFunction problem, int member);
+
+/// The problem on an interval of `length`, for adaptive runs, and its certified end state.
+const Ivp& lengthened(ProblemFunction problem, double length);
+const ReferenceState& certified_end_of_lengthened(ProblemFunction problem, double length);
 
 }  // namespace fw::analysis

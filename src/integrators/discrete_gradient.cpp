@@ -167,6 +167,8 @@ std::unique_ptr<Integrator> make_discrete_gradient() {
                   .order_with_velocity_forces = 2,
                   .stages = 1,
                   .is_explicit = false,
+                  .is_symmetric = true,
+                  .conserves_energy = true,
                   .is_a_stable = true,
                   .needs_second_order = true,
                   .needs_springs = true,

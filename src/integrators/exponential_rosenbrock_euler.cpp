@@ -74,7 +74,7 @@ std::unique_ptr<Integrator> make_exponential_rosenbrock_euler(const ExponentialO
                   .family = "exponential",
                   .order = 2,
                   .order_with_velocity_forces = 2,
-                  .stages = 1,
+                  .stages = 3,  // one right-hand side and two for its derivative by t
                   .is_explicit = true,
                   .is_a_stable = true,
                   .is_l_stable = true,

@@ -188,6 +188,7 @@ std::unique_ptr<Integrator> make_gautschi(const GautschiOptions& options) {
                   .order_with_velocity_forces = 0,
                   .stages = 1,
                   .is_symplectic = options.filter != TrigonometricFilter::gautschi,
+                  .is_symmetric = options.filter != TrigonometricFilter::gautschi,
                   .is_a_stable = true,
                   .needs_second_order = true,
                   .needs_position_forces = true,

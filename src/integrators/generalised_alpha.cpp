@@ -30,6 +30,7 @@ std::unique_ptr<Integrator> make_generalised_alpha(const GeneralisedAlphaOptions
       .order_with_velocity_forces = parameters.order(),
       .stages = 1,
       .is_explicit = false,
+      .carries_more_than_state = true,
       .is_a_stable = parameters.is_unconditionally_stable(),
       .is_l_stable = options.rho_infinity == 0.0,
       .needs_second_order = true,

@@ -22,6 +22,7 @@ std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options) {
                   .order_with_velocity_forces = parameters.order(),
                   .stages = 1,
                   .is_explicit = false,
+                  .carries_more_than_state = true,
                   .is_a_stable = parameters.is_unconditionally_stable(),
                   .needs_second_order = true,
                   .formula =

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "integrators/extended_precision_steps.hpp"
 #include "integrators/implicit_update.hpp"
 #include "integrators/starting_steps.hpp"
 #include "integrators/stepper.hpp"
+#include "schemes/high_order_explicit_tableaus.hpp"
 #include "schemes/multistep_properties.hpp"
 
 namespace fw::integrators {
@@ -95,6 +97,70 @@ class LinearMultistepStepper final : public Stepper {
   std::unique_ptr<Stepper> start_;
 };
 
+/// One step of the classical method of order 8 in binary128, to start a formula: its tableau comes from the list.
+void extended_starting_step(const schemes::TableauValues<Float128>& tableau, const OdeSystem& system, const Float128& t,
+                            const Float128& h, std::vector<Float128>& y) {
+  const auto s = static_cast<std::size_t>(tableau.stages);
+  std::vector<std::vector<Float128>> k(s, y);
+  std::vector<Float128> stage(y.size());
+  for (std::size_t i = 0; i < s; ++i) {
+    stage = y;
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t n = 0; n < y.size(); ++n) stage[n] += h * tableau.a[i * s + j] * k[j][n];
+    }
+    system.rhs(Float128(t + tableau.c[i] * h), stage, k[i]);
+  }
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t n = 0; n < y.size(); ++n) y[n] += h * tableau.b[i] * k[i][n];
+  }
+}
+
+/// The formula in binary128. Implicit ones by fixed-point iteration down to rounding: for problems that are not stiff.
+std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, const Ivp& ivp, std::uint64_t steps) {
+  const auto k = static_cast<std::size_t>(formula.steps());
+  const auto& start = schemes::high_order_explicit_tableaus().back();
+  const schemes::TableauValues<Float128> start_values = schemes::values<Float128>(start);
+  std::vector<std::vector<Float128>> states, slopes;  // oldest first
+  const OdeSystem& system = *ivp.system;
+  return run_extended_steps(ivp, steps, [&](const Float128& t, const Float128& h, std::vector<Float128>& y) {
+    const std::size_t n = y.size();
+    std::vector<Float128> slope(n);
+    system.rhs(t, y, slope);
+    states.push_back(y);
+    slopes.push_back(slope);
+    if (states.size() < k) {
+      extended_starting_step(start_values, system, t, h, y);
+      return;
+    }
+    std::vector<Float128> known(n, Float128(0));
+    for (std::size_t j = 0; j < k; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        known[i] += h * formula.beta[j].value() * slopes[j][i] - formula.alpha[j].value() * states[j][i];
+      }
+    }
+    states.erase(states.begin());
+    slopes.erase(slopes.begin());
+    const Float128 weight = h * formula.beta[k].value();
+    if (weight == 0) {
+      y = known;
+      return;
+    }
+    for (std::size_t i = 0; i < n; ++i) y[i] += h * slope[i];
+    constexpr int most_iterations = 200;
+    for (int iteration = 0; iteration < most_iterations; ++iteration) {
+      system.rhs(Float128(t + h), y, slope);
+      Float128 change = 0, size = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Float128 next = known[i] + weight * slope[i];
+        change = std::max(change, Float128(abs(next - y[i])));
+        size = std::max(size, Float128(abs(next)));
+        y[i] = next;
+      }
+      if (change <= 1e-31 * size) break;
+    }
+  });
+}
+
 }  // namespace
 
 std::unique_ptr<Integrator> make_linear_multistep(const schemes::MultistepFormula& formula) {
@@ -113,12 +179,16 @@ std::unique_ptr<Integrator> make_linear_multistep(const schemes::MultistepFormul
                   .stages = 1,
                   .is_explicit = numbers.is_explicit(),
                   .is_multistep = numbers.steps() > 1,
+                  .is_symmetric = schemes::is_symmetric(formula),
+                  .is_a_stable = schemes::is_a_stable(formula),
+                  .is_l_stable = schemes::is_l_stable(formula),
                   .formula = "sum_j alpha_j y_{n+j} = h sum_j beta_j f(t_{n+j}, y_{n+j})",
                   .reference = formula.reference};
   return std::make_unique<FixedStepIntegrator>(
       std::move(info), [numbers](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
         return std::make_unique<LinearMultistepStepper>(numbers, ivp, work);
-      });
+      },
+      [formula](const Ivp& ivp, std::uint64_t steps) { return solve_extended(formula, ivp, steps); });
 }
 
 }  // namespace fw::integrators

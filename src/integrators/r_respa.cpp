@@ -142,6 +142,7 @@ std::unique_ptr<Integrator> make_r_respa(const RespaOptions& options) {
                   .order_with_velocity_forces = 2,
                   .stages = options.inner_steps + 1,
                   .is_symplectic = true,
+                  .is_symmetric = true,
                   .needs_second_order = true,
                   .needs_force_splitting = true,
                   .formula =

@@ -31,7 +31,9 @@ StepMatrix::StepMatrix(const SecondOrderSystem& system) : StepMatrix(system, nul
 StepMatrix::StepMatrix(const SecondOrderSystem& system, const ForceSplitting* splitting)
     : system_(system),
       splitting_(splitting),
-      stiffness_(system.tangent_pattern()), damping_(stiffness_), matrix_(stiffness_) {
+      stiffness_(system.tangent_pattern()),
+      damping_(stiffness_),
+      matrix_(stiffness_) {
   const int n = static_cast<int>(matrix_.cols());
   diagonal_.resize(static_cast<std::size_t>(n));
   transpose_.resize(static_cast<std::size_t>(matrix_.nonZeros()));
@@ -51,7 +53,8 @@ const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVector
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v,
                                          const MatrixFactors& factors, TangentModel model) {
   if (splitting_ != nullptr) {
-    if (model != TangentModel::exact) throw std::logic_error("the stiff tangent is available as \"exact\" only");
+    if (model != TangentModel::exact)
+      throw std::logic_error("the stiff tangent is available as \"exact\" only");
     splitting_->stiff_stiffness(t, q, v, stiffness_);
     splitting_->stiff_damping(t, q, v, damping_);
   } else {

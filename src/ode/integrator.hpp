@@ -33,6 +33,8 @@ struct MethodInfo {
   bool is_multistep = false;
   bool is_adaptive = false;    ///< can choose its own steps from tolerances
   bool has_fixed_step = true;  ///< can run with a constant step
+  /// A step depends on more than (t, y), an acceleration for example: a single step says little of the scheme.
+  bool carries_more_than_state = false;
   int embedded_order = 0;      ///< order of the solution that the error estimate compares with; 0: none
   bool is_symplectic = false;  ///< for forces f(t, q) that have a potential
   bool is_symmetric = false;   ///< equal to its adjoint: reversible in time where the problem is

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/types.hpp"
+#include "schemes/multistep_properties.hpp"
 #include "schemes/order_conditions.hpp"
 
 namespace fw::schemes {
@@ -35,7 +36,6 @@ std::vector<Float128> algebraic_stability_matrix(const TableauValues<Float128>& 
 /// The trace and determinant of the oscillator matrix at z.
 struct Propagation {
   double trace, determinant;
-  double half_defect;  ///< 1 − trace/2, without cancellation
 };
 
 class OscillatorMatrix {
@@ -59,7 +59,7 @@ class OscillatorMatrix {
     Eigen::Matrix2d m;
     m << 1.0, 1.0, 0.0, 1.0;
     m += change;
-    return {m.trace(), m.determinant(), -0.5 * change.trace()};
+    return {m.trace(), m.determinant()};
   }
 
  private:
@@ -146,8 +146,14 @@ DerivedProperties derive_one(const AdditiveTableau& tableau) {
   return p;
 }
 
-DerivedProperties derive_one(const MultistepFormula&) {
-  return {};
+DerivedProperties derive_one(const MultistepFormula& formula) {
+  DerivedProperties p;
+  p.order = p.order_with_velocity_forces = order_of_accuracy(formula);
+  p.symmetric = is_symmetric(formula);
+  p.zero_stable = is_zero_stable(formula);
+  p.stability_angle = stability_angle(formula);
+  p.error_constant = error_constant(formula).convert_to<double>();
+  return p;
 }
 
 }  // namespace
@@ -227,6 +233,13 @@ bool is_stiffly_accurate(const ButcherTableau& tableau) {
     if (!is_zero(t.A(t.stages - 1, j) - t.b[static_cast<std::size_t>(j)])) return false;
   }
   return true;
+}
+
+double oscillator_growth(const NystromValues<Float128>& tableau, double z) {
+  const Propagation m = OscillatorMatrix(tableau).at(z);
+  const double discriminant = 0.25 * m.trace * m.trace - m.determinant;
+  if (discriminant <= 0.0) return std::sqrt(std::max(m.determinant, 0.0));
+  return std::abs(0.5 * m.trace) + std::sqrt(discriminant);
 }
 
 OscillatorStability oscillator_stability(const NystromValues<Float128>& tableau) {

@@ -30,9 +30,15 @@ struct DerivedProperties {
   std::optional<StabilityFunction> stability_function{};
   std::optional<LinearStability> stability{};
   std::optional<OscillatorStability> oscillator{};
+  std::optional<bool> zero_stable{};        ///< of multistep formulas: the root condition
+  std::optional<double> stability_angle{};  ///< of multistep formulas: A(α) in degrees
+  std::optional<double> error_constant{};   ///< of multistep formulas: C_{p+1}/σ(1)
 };
 
 DerivedProperties derive(const SchemeData& data);
+
+/// Spectral radius of the oscillator matrix at z = hω.
+double oscillator_growth(const NystromValues<Float128>& tableau, double z);
 
 /// Single properties, for the facts of a scheme that are listed.
 bool is_symplectic(const ButcherTableau& tableau);

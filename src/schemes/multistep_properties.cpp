@@ -158,4 +158,13 @@ bool is_l_stable(const MultistepFormula& formula) {
                      [](const Coefficient& beta) { return as<Rational>(beta) == 0; });
 }
 
+bool is_symmetric(const MultistepFormula& formula) {
+  const std::size_t k = formula.alpha.size() - 1;
+  for (std::size_t j = 0; j <= k; ++j) {
+    if (formula.alpha[j].value() != -formula.alpha[k - j].value()) return false;
+    if (formula.beta[j].value() != formula.beta[k - j].value()) return false;
+  }
+  return true;
+}
+
 }  // namespace fw::schemes

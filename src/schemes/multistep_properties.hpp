@@ -33,6 +33,9 @@ double stability_angle(const MultistepFormula& formula);
 /// Whether the stability angle is 90 degrees.
 bool is_a_stable(const MultistepFormula& formula);
 
+/// Whether α_j = −α_{k−j} and β_j = β_{k−j}: equal to its adjoint [Hairer, Lubich, Wanner 2006, XV.1].
+bool is_symmetric(const MultistepFormula& formula);
+
 /// A-stable, and all roots of σ are zero: hλ → −∞ is damped at once.
 bool is_l_stable(const MultistepFormula& formula);
 

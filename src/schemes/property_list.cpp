@@ -193,6 +193,12 @@ std::vector<NamedProperty> property_list(const DerivedProperties& p) {
     list.push_back({"dissipation_order", "dissipation order",
                     s.dissipation_order < 0 ? "none (|R(iy)| = 1)" : std::to_string(s.dissipation_order)});
   }
+  add_bool("zero_stable", "zero-stable", p.zero_stable);
+  if (p.stability_angle) {
+    list.push_back({"a_stable", "A-stable", *p.stability_angle >= 90.0});
+    list.push_back({"alpha_degrees", "A(alpha), degrees", *p.stability_angle});
+  }
+  if (p.error_constant) list.push_back({"error_constant", "error constant", *p.error_constant});
   if (p.oscillator) {
     list.push_back({"oscillator_stability_interval", "stable up to h omega", p.oscillator->interval});
     list.push_back({"dispersion_order", "dispersion order", order_or_none(p.oscillator->dispersion_order)});

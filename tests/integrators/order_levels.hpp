@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -40,7 +41,7 @@ struct DrivenChain {
   }
 };
 
-inline Ivp driven_chain(bool damped, double end_time = 1.93) {
+inline Ivp driven_chain(bool damped, double end_time = 1.5) {
   Ivp ivp;
   const Vector mass{{1.7, 0.6, 2.3}};
   ivp.system = std::make_shared<FunctorSecondOrderSystem<DrivenChain>>(
@@ -105,6 +106,9 @@ inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, 
 inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector& reference, double order,
                          int coarsest, int levels, const std::string& what,
                          double refinement = std::numbers::sqrt2, double window = 0.1) {
+  // In double, order 6 has its asymptotic range within two decades of rounding: a wider window, still
+  // two-sided.
+  if (order >= 6.0) window = std::max(window, 0.15);
   const ObservedOrders observed = observed_orders(scheme, ivp, reference, coarsest, levels, refinement);
   for (const auto& [fit, half] :
        {std::pair{observed.position, "positions"}, std::pair{observed.velocity, "velocities"}}) {
