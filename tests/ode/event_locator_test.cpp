@@ -133,7 +133,8 @@ void check_pendulum(const StepControl& control, const std::string& name, double 
 
 TEST(EventLocator, FindsThePassagesOfAPendulumByEllipticIntegrals) {
   check_pendulum(AdaptiveStep{1e-11, 1e-13}, "dormand_prince_54", 1e-9);
-  // Without a dense output of its own, by cubic Hermite polynomials: h⁴/384 max|φ⁽⁵⁾| = 1.7e-10 in the velocity.
+  // Without a dense output of its own, by cubic Hermite polynomials: h⁴/384 max|φ⁽⁵⁾| = 1.7e-10 in the
+  // velocity.
   AdaptiveStep short_steps{1e-12, 1e-13};
   short_steps.maximum_step = 0.01;
   check_pendulum(short_steps, "cash_karp_54", 2e-10);
