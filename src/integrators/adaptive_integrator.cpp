@@ -33,13 +33,16 @@ void check_tolerances(const MethodInfo& info, const AdaptiveStep& control) {
   require(control.minimum_step >= 0.0 && control.maximum_step > control.minimum_step,
           fmt::format("step limits: found {} to {}, expected 0 <= minimum < maximum", control.minimum_step,
                       control.maximum_step));
+  require(control.initial_step == 0.0 || control.initial_step >= control.minimum_step,
+          fmt::format("initial step: found {}, expected at least the minimum of {}", control.initial_step,
+                      control.minimum_step));
 }
 
 /// One run with steps chosen by the error estimate.
 class AdaptiveRun {
  public:
-  AdaptiveRun(const MethodInfo& info, const ControllerOptions& options, const Ivp& ivp, const AdaptiveStep& control,
-              Observer& observer)
+  AdaptiveRun(const MethodInfo& info, const ControllerOptions& options, const Ivp& ivp,
+              const AdaptiveStep& control, Observer& observer)
       : info_(info),
         options_(options),
         ivp_(ivp),
@@ -76,26 +79,28 @@ class AdaptiveRun {
     Vector& y = solution_.state;
     double h = control_.initial_step > 0.0
                    ? std::min({control_.initial_step, control_.maximum_step, ivp_.t1 - ivp_.t0})
-                   : initial_step(ivp_, control_, options_.norm, info_.order, solution_.work);
+                   : std::max(initial_step(ivp_, control_, options_.norm, info_.order, solution_.work),
+                              control_.minimum_step);
     int failures = 0;
     for (std::uint64_t steps = 0;;) {
       const double rest = ivp_.t1 - t;
-      const bool last = h * stretch_to_end >= rest;
+      const bool last = h * stretch_to_end >= rest && rest <= control_.maximum_step;
+      const double smallest = std::max(
+          control_.minimum_step, smallest_step_in_ulps * (std::nextafter(std::abs(t), 1e300) - std::abs(t)));
+      if (!last && h < smallest) {
+        return {StatusCode::step_too_small,
+                fmt::format(
+                    "at t = {:.6g} the error test asks for a step of {:.3g}, below the smallest of {:.3g}{}",
+                    t, h, smallest, last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
+      }
       if (last) {
         h = rest;
       } else if (2.0 * h > rest) {
-        h = 0.5 * rest;  // two even steps instead of a long and a short one
-      }
-      const double smallest =
-          std::max(control_.minimum_step, smallest_step_in_ulps * (std::nextafter(std::abs(t), 1e300) - std::abs(t)));
-      if (!last && h < smallest) {
-        return {StatusCode::step_too_small,
-                fmt::format("at t = {:.6g} the error test asks for a step of {:.3g}, below the smallest of {:.3g}{}",
-                            t, h, smallest, last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
+        h = std::max(0.5 * rest, smallest);  // two even steps instead of a long and a short one
       }
       if (steps + solution_.work.rejected_steps >= control_.maximum_steps) {
-        return {StatusCode::step_limit,
-                fmt::format("{} steps did not reach the end: stopped at t = {:.6g}", control_.maximum_steps, t)};
+        return {StatusCode::step_limit, fmt::format("{} steps did not reach the end: stopped at t = {:.6g}",
+                                                    control_.maximum_steps, t)};
       }
       const double estimate = try_step(stepper, t, h, y, y_new, error);
       if (!(estimate <= 1.0)) {
@@ -109,6 +114,7 @@ class AdaptiveRun {
         continue;
       }
       failures = 0;
+      last_failure_.clear();
       ++steps;
       if (Status status = check_state(y_new, t + h, steps); !status.ok()) return status;
       stepper.accept();
@@ -126,7 +132,8 @@ class AdaptiveRun {
   }
 
   /// The error in units of the tolerance; NaN where the step could not be made.
-  double try_step(AdaptiveStepper& stepper, double t, double h, ConstVectorRef y, VectorRef y_new, VectorRef error) {
+  double try_step(AdaptiveStepper& stepper, double t, double h, ConstVectorRef y, VectorRef y_new,
+                  VectorRef error) {
     const Status status = stepper.attempt(t, h, y, y_new, error);
     if (!status.ok()) {
       last_failure_ = status.describe();

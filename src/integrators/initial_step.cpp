@@ -14,6 +14,7 @@ double initial_step(const Ivp& ivp, const AdaptiveStep& tolerances, ErrorNorm no
   const double speed = error_in_tolerances(norm, tolerances, slope, y, y);
   constexpr double tiny = 1e-5;
   double guess = size < tiny || speed < tiny ? 1e-6 : 0.01 * size / speed;
+  if (!std::isfinite(guess)) guess = 1e-6;  // the first attempt will tell what is wrong with f
   guess = std::min({guess, length, tolerances.maximum_step});
   const Vector moved = y + guess * slope;
   ivp.system->rhs(ivp.t0 + guess, moved, later_slope);

@@ -17,12 +17,13 @@ struct Cloth {
   std::int64_t springs() const { return static_cast<std::int64_t>(system->model().springs.size()); }
 };
 
-inline Cloth make_cloth(int n) {
+/// k_s = `stiffness` [N/m] and k_d = `damping` [N·s/m] on every spring, masses of 1 g.
+inline Cloth make_cloth(int n, double stiffness = 1e4, double damping = 1.0) {
   scene::Scene scene = scene::parse_scene(
       fmt::format("title = \"cloth\"\n[world]\ngravity = [0, 0, -9.81]\n[generate]\nkind = \"cloth\"\ncounts "
                   "= [{0}, {0}]\n"
-                  "size = [1, 1]\nmass = 1e-3\nstiffness = 1e4\ndamping = 1.0\npinned = \"top_corners\"\n",
-                  n),
+                  "size = [1, 1]\nmass = 1e-3\nstiffness = {1}\ndamping = {2}\npinned = \"top_corners\"\n",
+                  n, stiffness, damping),
       "cloth.toml");
   Cloth cloth;
   cloth.state = initial_state(scene);

@@ -129,5 +129,27 @@ TEST(Schemes, AllocateNothingAfterTheFirstStep) {
   }
 }
 
+TEST(AdaptiveSchemes, AllocateNothingAfterTheFirstStep) {
+  // Ten times the time means ten times the steps, rejected ones included; the number of allocations stays.
+  const auto allocations_over = [](const Integrator& scheme, double time, std::uint64_t& steps) {
+    const Ivp ivp = random_network(26, {.is_damped = true}, time);
+    NullObserver nobody;
+    Solution solution;
+    const std::size_t count = allocations_of([&] {
+      solution = scheme.solve(ivp, AdaptiveStep{1e-7, 1e-9}, nobody);
+    });
+    EXPECT_TRUE(solution.status.ok()) << scheme.info().name << ": " << solution.status.describe();
+    steps = solution.work.accepted_steps + solution.work.rejected_steps;
+    return count;
+  };
+  for (const char* name :
+       {"dormand_prince_54", "bogacki_shampine_32", "cash_karp_54", "dormand_prince_853"}) {
+    const auto scheme = explicit_runge_kutta(name);
+    std::uint64_t few = 0, many = 0;
+    EXPECT_EQ(allocations_over(*scheme, 10.0, many), allocations_over(*scheme, 1.0, few)) << name;
+    EXPECT_GT(many, 5 * few) << name;
+  }
+}
+
 }  // namespace
 }  // namespace fw::integrators
