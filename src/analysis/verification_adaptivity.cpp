@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
 
 #include "analysis/gragg_extrapolation.hpp"
 #include "analysis/order_fit.hpp"
@@ -24,16 +23,9 @@ std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer
   return result;
 }
 
-/// The order of values at falling steps. Single steps of coarse size may do anything, so the range begins where values
-/// fall from there on down to the floor.
+/// The order of values at falling steps; coarse single steps may do anything.
 std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values, double floor) {
-  std::size_t end = 0;
-  while (end < values.size() && !(values[end] <= floor)) ++end;
-  std::size_t begin = end > 0 ? end - 1 : 0;
-  while (begin > 0 && values[begin - 1] > values[begin]) --begin;
-  const std::span<const double> all_steps(steps), all_values(values);
-  const OrderFit fit =
-      fit_order(all_steps.subspan(begin, end - begin), all_values.subspan(begin, end - begin), floor, 0.15);
+  const OrderFit fit = fit_finest_order(steps, values, floor, 0.15);
   if (!fit.valid) return std::nullopt;
   return fit.order;
 }

@@ -70,8 +70,10 @@ class OrderMeasurement {
       // Low orders never come near the floor: slopes that no longer change end the run.
       if (whole > fewest_steps && slopes_have_settled(position_) && slopes_have_settled(velocity_)) break;
     }
-    position_fit = fit_order(steps_, position_, floor, slope_tolerance);
-    velocity_fit = fit_order(steps_, velocity_, floor, slope_tolerance);
+    // Runs in binary128 carry no noise above the floor, but errors of high order change signs on coarse steps.
+    const auto fit = extended_ ? fit_finest_order : fit_order;
+    position_fit = fit(steps_, position_, floor, slope_tolerance);
+    velocity_fit = fit(steps_, velocity_, floor, slope_tolerance);
   }
 
   bool extended() const { return extended_; }

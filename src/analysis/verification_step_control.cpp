@@ -12,17 +12,6 @@ namespace fw::analysis {
 
 namespace {
 
-using ProblemFunction = const Ivp& (*)();
-
-/// The first problem that the scheme runs on; null if there is none.
-ProblemFunction applicable(const MethodInfo& info) {
-  for (const ProblemFunction problem :
-       {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network}) {
-    if (why_not_applicable(info, *problem().system).empty()) return problem;
-  }
-  return nullptr;
-}
-
 double relative_difference(ConstVectorRef a, ConstVectorRef b) {
   return (a - b).lpNorm<Eigen::Infinity>() / b.lpNorm<Eigen::Infinity>();
 }
@@ -40,7 +29,7 @@ void check_shorter_last_step(const SchemeUnderTest& scheme, ProblemFunction prob
   const MethodInfo& info = scheme.integrator.info();
   PropertyCheck check{.property = "shorter last step"};
   const Ivp& ivp = problem();
-  const Vector exact = in_double(certified_end(problem).value);
+  const Vector exact = in_double(certified_end(problem, 0).value);
   const auto solve = [&](double steps) {
     NullObserver observer;
     return scheme.integrator.solve(ivp, FixedStep{.step = (ivp.t1 - ivp.t0) / steps}, observer);
@@ -122,7 +111,7 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
       check.reason = "an attempt after a rejected one is another step";
     }
   }
-  const Vector exact = in_double(certified_end(problem).value);
+  const Vector exact = in_double(certified_end(problem, 0).value);
   constexpr double tolerance = 1e-8, factor = 10.0;
   const auto solve = [&](double initial_step) {
     NullObserver observer;
@@ -150,7 +139,9 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
 
 void verify_step_control(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
-  const ProblemFunction problem = applicable(info);
+  const ProblemFunction problem = first_applicable(
+      info,
+      {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network});
   if (problem == nullptr || !info.has_fixed_step) {
     checks.push_back({.property = "shorter last step", .reason = "the scheme has no constant steps"});
     return;

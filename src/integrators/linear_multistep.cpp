@@ -7,7 +7,6 @@
 #include "integrators/implicit_update.hpp"
 #include "integrators/starting_steps.hpp"
 #include "integrators/stepper.hpp"
-#include "schemes/high_order_explicit_tableaus.hpp"
 #include "schemes/multistep_properties.hpp"
 
 namespace fw::integrators {
@@ -97,29 +96,11 @@ class LinearMultistepStepper final : public Stepper {
   std::unique_ptr<Stepper> start_;
 };
 
-/// One step of the classical method of order 8 in binary128, to start a formula: its tableau comes from the list.
-void extended_starting_step(const schemes::TableauValues<Float128>& tableau, const OdeSystem& system, const Float128& t,
-                            const Float128& h, std::vector<Float128>& y) {
-  const auto s = static_cast<std::size_t>(tableau.stages);
-  std::vector<std::vector<Float128>> k(s, y);
-  std::vector<Float128> stage(y.size());
-  for (std::size_t i = 0; i < s; ++i) {
-    stage = y;
-    for (std::size_t j = 0; j < i; ++j) {
-      for (std::size_t n = 0; n < y.size(); ++n) stage[n] += h * tableau.a[i * s + j] * k[j][n];
-    }
-    system.rhs(Float128(t + tableau.c[i] * h), stage, k[i]);
-  }
-  for (std::size_t i = 0; i < s; ++i) {
-    for (std::size_t n = 0; n < y.size(); ++n) y[n] += h * tableau.b[i] * k[i][n];
-  }
-}
-
 /// The formula in binary128. Implicit ones by fixed-point iteration down to rounding: for problems that are not stiff.
 std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, const Ivp& ivp, std::uint64_t steps) {
   const auto k = static_cast<std::size_t>(formula.steps());
-  const auto& start = schemes::high_order_explicit_tableaus().back();
-  const schemes::TableauValues<Float128> start_values = schemes::values<Float128>(start);
+  const bool is_explicit = formula.beta[k].value() == 0;
+  const int order = std::max(1, schemes::order_of_accuracy(formula));
   std::vector<std::vector<Float128>> states, slopes;  // oldest first
   const OdeSystem& system = *ivp.system;
   return run_extended_steps(ivp, steps, [&](const Float128& t, const Float128& h, std::vector<Float128>& y) {
@@ -129,7 +110,7 @@ std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, c
     states.push_back(y);
     slopes.push_back(slope);
     if (states.size() < k) {
-      extended_starting_step(start_values, system, t, h, y);
+      extended_starting_step(system, is_explicit, order, t, h, y);
       return;
     }
     std::vector<Float128> known(n, Float128(0));
@@ -146,18 +127,7 @@ std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, c
       return;
     }
     for (std::size_t i = 0; i < n; ++i) y[i] += h * slope[i];
-    constexpr int most_iterations = 200;
-    for (int iteration = 0; iteration < most_iterations; ++iteration) {
-      system.rhs(Float128(t + h), y, slope);
-      Float128 change = 0, size = 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        const Float128 next = known[i] + weight * slope[i];
-        change = std::max(change, Float128(abs(next - y[i])));
-        size = std::max(size, Float128(abs(next)));
-        y[i] = next;
-      }
-      if (change <= 1e-31 * size) break;
-    }
+    extended_fixed_point(system, Float128(t + h), known, weight, y, slope);
   });
 }
 

@@ -1,5 +1,6 @@
 #include "integrators/starting_steps.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "integrators/implicit_update.hpp"
@@ -126,6 +127,66 @@ std::unique_ptr<Stepper> make_explicit_starting_steps(const Ivp& ivp, int order,
 
 std::unique_ptr<Stepper> make_implicit_starting_steps(const Ivp& ivp, int order, Work& work) {
   return std::make_unique<ImplicitStartingSteps>(ivp, order, work);
+}
+
+void extended_fixed_point(const OdeSystem& system, const Float128& t, const std::vector<Float128>& known,
+                          const Float128& weight, std::vector<Float128>& y, std::vector<Float128>& slope) {
+  constexpr int most_iterations = 200;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    system.rhs(t, y, slope);
+    Float128 change = 0, size = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const Float128 next = known[i] + weight * slope[i];
+      change = std::max(change, Float128(abs(next - y[i])));
+      size = std::max(size, Float128(abs(next)));
+      y[i] = next;
+    }
+    if (change <= 1e-31 * size) return;
+  }
+}
+
+void extended_starting_step(const OdeSystem& system, bool is_explicit, int order, const Float128& t,
+                            const Float128& h, std::vector<Float128>& y) {
+  const std::size_t n = y.size();
+  const int columns = is_explicit ? (order + 1) / 2 : order;
+  std::vector<std::vector<Float128>> row(static_cast<std::size_t>(columns), y);
+  std::vector<Float128> value(n), slope(n), first_slope(n), previous(n);
+  system.rhs(t, y, first_slope);
+  const auto substeps = [&](int j) { return is_explicit ? 2 * (j + 1) : j + 1; };
+  for (int j = 0; j < columns; ++j) {
+    const int count = substeps(j);
+    const Float128 length = h / count;
+    value = y;
+    if (is_explicit) {
+      previous = y;
+      for (std::size_t k = 0; k < n; ++k) value[k] += length * first_slope[k];
+      for (int i = 1; i < count; ++i) {
+        system.rhs(Float128(t + i * length), value, slope);
+        for (std::size_t k = 0; k < n; ++k) {
+          const Float128 next = previous[k] + 2 * length * slope[k];
+          previous[k] = value[k];
+          value[k] = next;
+        }
+      }
+    } else {
+      for (int i = 1; i <= count; ++i) {
+        previous = value;
+        extended_fixed_point(system, Float128(t + i * length), previous, length, value, slope);
+      }
+    }
+    for (int k = 0; k < j; ++k) {
+      Float128 ratio = Float128(substeps(j)) / substeps(j - k - 1);
+      if (is_explicit) ratio *= ratio;
+      auto& kept = row[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < n; ++i) {
+        const Float128 improved = value[i] + (value[i] - kept[i]) / (ratio - 1);
+        kept[i] = value[i];
+        value[i] = improved;
+      }
+    }
+    row[static_cast<std::size_t>(j)] = value;
+  }
+  y = row.back();
 }
 
 }  // namespace fw::integrators
