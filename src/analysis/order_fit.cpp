@@ -96,8 +96,8 @@ OrderFit fit_finest_order(std::span<const double> steps, std::span<const double>
   while (end < errors.size() && !(errors[end] <= floor)) ++end;
   std::size_t begin = end > 0 ? end - 1 : 0;
   while (begin > 0 && errors[begin - 1] > errors[begin]) --begin;
-  OrderFit fit =
-      fit_order(steps.subspan(begin, end - begin), errors.subspan(begin, end - begin), floor, slope_tolerance);
+  OrderFit fit = fit_order(steps.subspan(begin, end - begin), errors.subspan(begin, end - begin), floor,
+                           slope_tolerance);
   std::vector<char> used(errors.size(), 0);
   std::copy(fit.used.begin(), fit.used.end(), used.begin() + static_cast<std::ptrdiff_t>(begin));
   fit.used = std::move(used);

@@ -37,8 +37,9 @@ inline constexpr int minimum_fit_points = 5;
 OrderFit fit_order(std::span<const double> steps, std::span<const double> errors, double floor,
                    double slope_tolerance = 0.1);
 
-/// The same on the finest run of points whose errors fall without a break down to the floor. For errors that may
-/// rise and fall on coarse steps, where the signs of their terms change, but carry no noise above `floor`.
+/// The same on the finest run of points whose errors fall without a break down to the floor. For errors that
+/// may rise and fall on coarse steps, where the signs of their terms change, but carry no noise above
+/// `floor`.
 OrderFit fit_finest_order(std::span<const double> steps, std::span<const double> errors, double floor,
                           double slope_tolerance = 0.1);
 

@@ -14,8 +14,8 @@ enum class Finding {
   not_applicable,  ///< nothing is claimed, or the property has no meaning for this scheme
 };
 
-/// One property of one scheme: what is claimed (MethodInfo), what follows from the coefficients, what the running
-/// code shows.
+/// One property of one scheme: what is claimed (MethodInfo), what follows from the coefficients, what the
+/// running code shows.
 struct PropertyCheck {
   std::string property{};
   std::string claimed{};
@@ -33,8 +33,8 @@ struct SchemeUnderTest {
   const Integrator* oracle = nullptr;
 };
 
-/// Checks every property, in the order of the list below. The functions are pure: the same scheme gives the same
-/// findings.
+/// Checks every property, in the order of the list below. The functions are pure: the same scheme gives the
+/// same findings.
 std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme);
 
 /// The single parts of `verify`; each appends its findings.
@@ -50,8 +50,8 @@ void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyChec
 void verify_step_control(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// Measured error against tolerance over 1e-3 … 1e-10 on three problems.
 void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
-/// R(hJ) from the coefficients against one black-box step, as first-order and as second-order system; for multistep
-/// formulas the recurrence, for splitting and Nyström schemes the matrix of the oscillator.
+/// R(hJ) from the coefficients against one black-box step, as first-order and as second-order system; for
+/// multistep formulas the recurrence, for splitting and Nyström schemes the matrix of the oscillator.
 void verify_stability_function(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// A- and L-stability and the real and imaginary intervals, by black-box steps on both sides of each limit.
 void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);

@@ -15,7 +15,8 @@ namespace fw::analysis {
 
 namespace {
 
-std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems) {
+std::vector<ProblemFunction> applicable(const MethodInfo& info,
+                                        std::initializer_list<ProblemFunction> problems) {
   std::vector<ProblemFunction> result;
   for (const ProblemFunction problem : problems) {
     if (why_not_applicable(info, *problem().system).empty()) result.push_back(problem);
@@ -24,7 +25,8 @@ std::vector<ProblemFunction> applicable(const MethodInfo& info, std::initializer
 }
 
 /// The order of values at falling steps; coarse single steps may do anything.
-std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values, double floor) {
+std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values,
+                                  double floor) {
   const OrderFit fit = fit_finest_order(steps, values, floor, 0.15);
   if (!fit.valid) return std::nullopt;
   return fit.order;
@@ -101,8 +103,8 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
     checks.push_back(check);
     return;
   }
-  const auto problems = applicable(
-      info, {damped_oscillators, driven_oscillators, first_order_flow, damped_spring_network, spring_network});
+  const auto problems = applicable(info, {damped_oscillators, driven_oscillators, first_order_flow,
+                                          damped_spring_network, spring_network});
   if (problems.empty()) {
     check.reason = "no problem for it";
     checks.push_back(check);
@@ -122,9 +124,11 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
   const std::optional<double> slope = local_slope(steps, estimates, 2e-14);
   check.claimed = fmt::format("h^{}", expected);
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
-  if (derived.embedded_order) check.derived = fmt::format("h^{}", std::min(*derived.order, *derived.embedded_order) + 1);
+  if (derived.embedded_order)
+    check.derived = fmt::format("h^{}", std::min(*derived.order, *derived.embedded_order) + 1);
   check.measured = slope ? fmt::format("{:.2f}", *slope) : "no asymptotic range";
-  check.finding = slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Finding::holds : Finding::fails;
+  check.finding =
+      slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Finding::holds : Finding::fails;
   if (derived.embedded_order && check.derived != check.claimed) check.finding = Finding::fails;
   checks.push_back(check);
 }
@@ -132,7 +136,8 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
 void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   PropertyCheck check{.property = "dense output"};
   const MethodInfo& info = scheme.integrator.info();
-  const auto problems = applicable(info, {first_order_flow, damped_oscillators, driven_oscillators, spring_network});
+  const auto problems =
+      applicable(info, {first_order_flow, damped_oscillators, driven_oscillators, spring_network});
   if (problems.empty() || !info.has_fixed_step || info.is_multistep || info.carries_more_than_state) {
     check.reason = "schemes whose single step says all only";
     checks.push_back(check);
@@ -148,12 +153,13 @@ void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyChec
     const Solution solution = scheme.integrator.solve(step, FixedStep{.step = h}, observer);
     if (!solution.status.ok() || !observer.seen) continue;
     const double time[] = {ivp.t0 + theta * (step.t1 - ivp.t0)};
-    const ExtrapolationRun exact =
-        integrate_by_extrapolation(ivp, time, {.tableau = harmonic_extrapolation(7), .tolerance = 1e-20, .least_steps = 4});
+    const ExtrapolationRun exact = integrate_by_extrapolation(
+        ivp, time, {.tableau = harmonic_extrapolation(7), .tolerance = 1e-20, .least_steps = 4});
     steps.push_back(h);
     errors.push_back(relative_error(observer.value, exact.states.front()));
   }
-  const int order = std::min(info.order, info.order_with_velocity_forces > 0 ? info.order_with_velocity_forces : info.order);
+  const int order = std::min(
+      info.order, info.order_with_velocity_forces > 0 ? info.order_with_velocity_forces : info.order);
   const auto* tableau = std::get_if<schemes::ButcherTableau>(&scheme.data);
   // The cubic Hermite polynomial is good to O(h⁴), and never better than the end of the step.
   const bool own = tableau != nullptr && !tableau->dense.empty();
@@ -176,28 +182,29 @@ void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector
   // The step follows tol^{1/k}, the error the order p: slope p/k with k = min(p, p̂) + 1.
   const double expected =
       static_cast<double>(info.order) / static_cast<double>(std::min(info.order, info.embedded_order) + 1);
-  PropertyCheck check{.property = property, .claimed = fmt::format("tol^{:.2f}", expected), .finding = Finding::holds};
-  // Long enough for many steps of a high order at a loose tolerance, short enough for a low order at a tight one.
+  PropertyCheck check{
+      .property = property, .claimed = fmt::format("tol^{:.2f}", expected), .finding = Finding::holds};
+  // Long enough for many steps of a high order at a loose tolerance, short enough for a low order at a tight
+  // one.
   const double length = info.order >= 5 ? 12.0 : 3.0;
   int problems = 0;
-  for (const ProblemFunction problem : applicable(info, {damped_oscillators, driven_oscillators,
-                                                         conservative_oscillators, damped_spring_network,
-                                                         spring_network})) {
+  for (const ProblemFunction problem :
+       applicable(info, {damped_oscillators, driven_oscillators, conservative_oscillators,
+                         damped_spring_network, spring_network})) {
     if (++problems > 3) break;
     std::vector<double> tolerances, errors;
     double worst = 0.0;
     Status status;
     for (double tolerance = 1e-3; tolerance > 0.9e-10; tolerance /= std::sqrt(10.0)) {
       NullObserver observer;
-      const Solution solution =
-          scheme.integrator.solve(lengthened(problem, length),
-                                  AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
+      const Solution solution = scheme.integrator.solve(
+          lengthened(problem, length),
+          AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = tolerance}, observer);
       if (!solution.status.ok()) {
         status = solution.status;
         continue;
       }
-      const double error =
-          relative_error(solution.state, certified_end_of_lengthened(problem, length).value);
+      const double error = relative_error(solution.state, certified_end_of_lengthened(problem, length).value);
       tolerances.push_back(tolerance);
       errors.push_back(error);
       worst = std::max(worst, error / std::pow(tolerance, expected));
@@ -244,7 +251,8 @@ void verify_agreement(const SchemeUnderTest& scheme, std::vector<PropertyCheck>&
   check.measured = fmt::format("{:.1e}", difference);
   const bool ran = oracle.status.ok() && coarse.status.ok() && fine.status.ok();
   check.finding = ran && difference <= allowed ? Finding::holds : Finding::fails;
-  if (!ran) check.reason = (!oracle.status.ok() ? oracle : !coarse.status.ok() ? coarse : fine).status.describe();
+  if (!ran)
+    check.reason = (!oracle.status.ok() ? oracle : !coarse.status.ok() ? coarse : fine).status.describe();
   checks.push_back(check);
 }
 

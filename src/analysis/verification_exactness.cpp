@@ -35,8 +35,8 @@ bool runs_first_order_systems(const MethodInfo& info) {
   return !info.needs_second_order && info.has_fixed_step && info.order > 0;
 }
 
-/// A system that hands out unit slopes: the j-th call of its right-hand side returns e_j and keeps the arguments.
-/// An explicit method thereby shows its tableau: Y_i = h Σ_j a_ij e_j.
+/// A system that hands out unit slopes: the j-th call of its right-hand side returns e_j and keeps the
+/// arguments. An explicit method thereby shows its tableau: Y_i = h Σ_j a_ij e_j.
 class ProbingSystem final : public OdeSystem {
  public:
   explicit ProbingSystem(Index size) : size_(size) {}
@@ -83,8 +83,8 @@ double probe_explicit(const Integrator& integrator, const schemes::TableauValues
   return largest;
 }
 
-/// For any Runge–Kutta method with distinct nodes: φ_i(t) are the Lagrange polynomials of the nodes; ẏ_k = φ_k(t) gives
-/// b_k, and ż_{jk} = φ_j(t) y_k gives b_j a_jk.
+/// For any Runge–Kutta method with distinct nodes: φ_i(t) are the Lagrange polynomials of the nodes; ẏ_k =
+/// φ_k(t) gives b_k, and ż_{jk} = φ_j(t) y_k gives b_j a_jk.
 struct NodalSystem {
   std::vector<double> nodes;
   double t0, h;
@@ -119,7 +119,8 @@ double probe_nodal(const Integrator& integrator, const schemes::TableauValues<do
     const double weight = tableau.b[static_cast<std::size_t>(j)];
     largest = std::max(largest, std::abs(solution.state[j] / h - weight));
     for (int k = 0; k < s; ++k) {
-      largest = std::max(largest, std::abs(solution.state[s + j * s + k] / (h * h) - weight * tableau.A(j, k)));
+      largest =
+          std::max(largest, std::abs(solution.state[s + j * s + k] / (h * h) - weight * tableau.A(j, k)));
     }
   }
   return largest;
@@ -154,11 +155,13 @@ void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<Prop
   }
   constexpr double t0 = 0.25;
   const auto system = std::make_shared<FunctorSystem<Monomials>>(largest_degree + 1, Monomials{t0});
-  const Solution solution = one_step(scheme.integrator, {system, t0, t0 + 1.0, Vector::Zero(largest_degree + 1), {}});
+  const Solution solution =
+      one_step(scheme.integrator, {system, t0, t0 + 1.0, Vector::Zero(largest_degree + 1), {}});
   // Largest degree of g that is integrated to rounding; the next one must be missed clearly.
   const auto error = [&](int degree) { return std::abs(solution.state[degree] - 1.0); };
   int exact = 0;
-  // Rounding of coefficients and of differences in time (Rosenbrock) allows for 1e-9, a missed moment is far larger.
+  // Rounding of coefficients and of differences in time (Rosenbrock) allows for 1e-9, a missed moment is far
+  // larger.
   constexpr double rounding = 1e-9, missed = 1e-7;
   while (exact <= largest_degree && error(exact) <= rounding) ++exact;
   check.measured = std::to_string(exact);

@@ -26,7 +26,8 @@ Solution run(const Integrator& integrator, const Ivp& ivp, double step) {
 }
 
 /// ∂Φ/∂y of `count` steps by central differences, extrapolated from two increments (error O(δ⁴)).
-Matrix step_map_derivative(const Integrator& integrator, const Ivp& problem, double step, int count, Status& status) {
+Matrix step_map_derivative(const Integrator& integrator, const Ivp& problem, double step, int count,
+                           Status& status) {
   const Ivp base = shortened(problem, step, count);
   const Index n = base.y0.size();
   Matrix derivative(n, n);
@@ -47,7 +48,8 @@ Matrix step_map_derivative(const Integrator& integrator, const Ivp& problem, dou
 }
 
 /// ‖DᵀSD − S‖∞ relative to ‖S‖∞ with S = ((0, M), (−M, 0)), the symplectic form in (q, v).
-double symplectic_defect(const Integrator& integrator, const Ivp& problem, double step, int count, Status& status) {
+double symplectic_defect(const Integrator& integrator, const Ivp& problem, double step, int count,
+                         Status& status) {
   const Vector& mass = problem.system->second_order()->mass();
   const Index n = mass.size();
   // Fixed degrees of freedom do not move: the form lives on the others.
@@ -195,16 +197,21 @@ void check_energy(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& che
   if (info.conserves_energy) {
     check.claimed = "conserved";
     check.measured = fmt::format("{:.1e}", observer.largest() / scale);
-    check.finding = solution.status.ok() && observer.largest() <= std::max(1e-10, 10.0 * info.iteration_tolerance) * scale ? Finding::holds : Finding::fails;
+    check.finding =
+        solution.status.ok() && observer.largest() <= std::max(1e-10, 10.0 * info.iteration_tolerance) * scale
+            ? Finding::holds
+            : Finding::fails;
   } else {
     check.claimed = "no drift";
     // Rounding walks at random: 1e-14 of the energy per √step.
     const double rounding = 1e-14 * std::sqrt(static_cast<double>(count)) * scale;
     const double ratio = std::abs(observer.drift()) / (observer.largest() + rounding);
-    check.measured = fmt::format("drift {:.0f} % of amplitude {:.1e}", 100.0 * ratio, observer.largest() / scale);
+    check.measured =
+        fmt::format("drift {:.0f} % of amplitude {:.1e}", 100.0 * ratio, observer.largest() / scale);
     check.finding = solution.status.ok() && ratio <= 0.25 ? Finding::holds : Finding::fails;
   }
-  if (check.finding == Finding::fails) check.reason = fmt::format("over {} steps; {}", count, solution.status.describe());
+  if (check.finding == Finding::fails)
+    check.reason = fmt::format("over {} steps; {}", count, solution.status.describe());
   checks.push_back(check);
 }
 
@@ -282,12 +289,13 @@ void verify_reversibility(const SchemeUnderTest& scheme, std::vector<PropertyChe
   const bool measured = ulps <= reversible_below;
   check.measured = fmt::format("{:.1e} ULP", ulps);
   const bool ran = forward.status.ok() && backward.status.ok();
-  check.finding = ran && (measured || ulps >= not_reversible_above) && measured == info.is_symmetric ? Finding::holds
-                                                                                                     : Finding::fails;
+  check.finding = ran && (measured || ulps >= not_reversible_above) && measured == info.is_symmetric
+                      ? Finding::holds
+                      : Finding::fails;
   if (derived.symmetric && *derived.symmetric != info.is_symmetric) check.finding = Finding::fails;
   if (check.finding == Finding::fails) {
-    check.reason = ran ? fmt::format("reversible is below {:.0e} ULP, not reversible above {:.0e}", reversible_below,
-                                     not_reversible_above)
+    check.reason = ran ? fmt::format("reversible is below {:.0e} ULP, not reversible above {:.0e}",
+                                     reversible_below, not_reversible_above)
                        : (forward.status.ok() ? backward : forward).status.describe();
   }
   checks.push_back(check);

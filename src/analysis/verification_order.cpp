@@ -26,7 +26,8 @@ struct Errors {
   double position, velocity;
 };
 
-Errors errors_of(const OdeSystem& system, const std::vector<Float128>& y, const std::vector<Float128>& exact) {
+Errors errors_of(const OdeSystem& system, const std::vector<Float128>& y,
+                 const std::vector<Float128>& exact) {
   const auto relative = [&](std::size_t begin, std::size_t end) {
     Float128 error = 0, size = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -70,7 +71,8 @@ class OrderMeasurement {
       // Low orders never come near the floor: slopes that no longer change end the run.
       if (whole > fewest_steps && slopes_have_settled(position_) && slopes_have_settled(velocity_)) break;
     }
-    // Runs in binary128 carry no noise above the floor, but errors of high order change signs on coarse steps.
+    // Runs in binary128 carry no noise above the floor, but errors of high order change signs on coarse
+    // steps.
     const auto fit = extended_ ? fit_finest_order : fit_order;
     position_fit = fit(steps_, position_, floor, slope_tolerance);
     velocity_fit = fit(steps_, velocity_, floor, slope_tolerance);
@@ -124,7 +126,8 @@ class OrderMeasurement {
     if (extended_) return errors_of(*ivp.system, integrator_.extended_solver()(ivp, count), exact.value);
     NullObserver observer;
     const Solution solution = integrator_.solve(
-        ivp, FixedStep{.step = (ivp.t1 - ivp.t0) / static_cast<double>(count), .allow_short_last_step = false},
+        ivp,
+        FixedStep{.step = (ivp.t1 - ivp.t0) / static_cast<double>(count), .allow_short_last_step = false},
         observer);
     if (!solution.status.ok()) {
       failure = solution.status.describe();
@@ -161,14 +164,16 @@ PropertyCheck judge(const char* property, int claimed, const std::optional<int>&
   };
   judge_fit("q", measurement.position_fit);
   judge_fit("v", measurement.velocity_fit);
-  check.measured = fmt::format("{:.3f}, {:.3f}", measurement.position_fit.order, measurement.velocity_fit.order);
+  check.measured =
+      fmt::format("{:.3f}, {:.3f}", measurement.position_fit.order, measurement.velocity_fit.order);
   if (derived && *derived != claimed) fail(fmt::format("derived {}, claimed {}", *derived, claimed));
   if (measurement.extended()) check.reason += check.reason.empty() ? "binary128" : "; binary128";
   return check;
 }
 
-void check_order(const SchemeUnderTest& scheme, const char* property, int claimed, const std::optional<int>& derived,
-                 std::initializer_list<ProblemFunction> problems, std::vector<PropertyCheck>& checks) {
+void check_order(const SchemeUnderTest& scheme, const char* property, int claimed,
+                 const std::optional<int>& derived, std::initializer_list<ProblemFunction> problems,
+                 std::vector<PropertyCheck>& checks) {
   const ProblemFunction problem = first_applicable(scheme.integrator.info(), problems);
   if (problem == nullptr || claimed == 0 || !scheme.integrator.info().has_fixed_step) {
     checks.push_back({.property = property,
@@ -218,9 +223,10 @@ void check_extended_twin(const SchemeUnderTest& scheme, std::vector<PropertyChec
 void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
-  check_order(scheme, "order, forces f(t, q)", info.order, derived.order, {driven_oscillators, spring_network}, checks);
-  check_order(scheme, "order, forces f(t, q, v)", info.order_with_velocity_forces, derived.order_with_velocity_forces,
-              {damped_oscillators, damped_spring_network}, checks);
+  check_order(scheme, "order, forces f(t, q)", info.order, derived.order,
+              {driven_oscillators, spring_network}, checks);
+  check_order(scheme, "order, forces f(t, q, v)", info.order_with_velocity_forces,
+              derived.order_with_velocity_forces, {damped_oscillators, damped_spring_network}, checks);
   check_order(scheme, "order, y' = f(t, y)", info.order, derived.order, {first_order_flow}, checks);
   check_extended_twin(scheme, checks);
 }

@@ -12,8 +12,8 @@ namespace fw::analysis {
 
 namespace {
 
-/// The gradient of V = Σ (κ_i/2 q_i² + q_i⁴/5) + (q_0 − q_1)⁴/4 + (3/10) q_0 q_1 q_2, negated. Coefficients are exact in
-/// binary, so that every arithmetic has the same problem.
+/// The gradient of V = Σ (κ_i/2 q_i² + q_i⁴/5) + (q_0 − q_1)⁴/4 + (3/10) q_0 q_1 q_2, negated. Coefficients
+/// are exact in binary, so that every arithmetic has the same problem.
 template <class S>
 void conservative_force(std::span<const S> q, std::span<S> f) {
   const S stiffness[] = {S(1.25), S(2.5), S(0.75)};
@@ -85,9 +85,10 @@ Ivp oscillators(ForceClass force_class, double t0, double t1) {
 Ivp network(bool is_damped, bool is_free) {
   mechanics::MassSpringModel model;
   model.mass = {0.75, 1.5, 1.125, 2.0, 0.875, 1.375};
-  const double corners[6][3] = {{0.0, 0.0, 0.0},  {1.0, 0.125, 0.0},  {0.25, 0.875, 0.125},
+  const double corners[6][3] = {{0.0, 0.0, 0.0},  {1.0, 0.125, 0.0},   {0.25, 0.875, 0.125},
                                 {0.0, 0.25, 1.0}, {1.125, 0.0, 0.875}, {0.375, 1.0, 1.125}};
-  const int edges[11][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}, {0, 4}, {1, 5}};
+  const int edges[11][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3},
+                            {0, 3}, {1, 4}, {2, 5}, {0, 4}, {1, 5}};
   Ivp ivp;
   ivp.y0 = Vector::Zero(36);
   for (Index i = 0; i < 6; ++i) {
@@ -148,7 +149,8 @@ double conservative_energy(ConstVectorRef y) {
 }
 
 const Ivp& first_order_flow() {
-  static const Ivp ivp{std::make_shared<FunctorSystem<Flow>>(3, Flow{}), 0.2, 1.7, Vector{{0.875, -0.5, 1.25}}, {}};
+  static const Ivp ivp{
+      std::make_shared<FunctorSystem<Flow>>(3, Flow{}), 0.2, 1.7, Vector{{0.875, -0.5, 1.25}}, {}};
   return ivp;
 }
 
@@ -212,10 +214,13 @@ const CertifiedProblem& member_of(ProblemFunction problem, int member) {
     Ivp ivp = problem();
     const SecondOrderSystem* second_order = ivp.system->second_order();
     for (Index i = 0; i < ivp.y0.size(); ++i) {
-      const bool fixed = second_order != nullptr &&
-                         second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
+      const bool fixed =
+          second_order != nullptr &&
+          second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
       // Multiples of 1/64, exact in binary.
-      if (!fixed) ivp.y0[i] += 0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
+      if (!fixed)
+        ivp.y0[i] +=
+            0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
     }
     return ivp;
   });

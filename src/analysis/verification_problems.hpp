@@ -9,8 +9,8 @@
 
 namespace fw::analysis {
 
-/// The problems on which schemes are verified. All are smooth, nonlinear, with masses other than 1 and several degrees
-/// of freedom, on intervals whose ends are no special points.
+/// The problems on which schemes are verified. All are smooth, nonlinear, with masses other than 1 and
+/// several degrees of freedom, on intervals whose ends are no special points.
 
 /// M q̈ = f(t, q), 3 degrees of freedom, driven and anharmonic, on [0.3, 2.1].
 const Ivp& driven_oscillators();
@@ -33,7 +33,8 @@ using ProblemFunction = const Ivp& (*)();
 /// The first of these that the scheme can run on; null if there is none.
 ProblemFunction first_applicable(const MethodInfo& info, std::initializer_list<ProblemFunction> problems);
 
-/// A problem from several initial states: in one of them an error coefficient may happen to vanish, hardly in all.
+/// A problem from several initial states: in one of them an error coefficient may happen to vanish, hardly in
+/// all.
 inline constexpr int ensemble_size = 3;
 const Ivp& ensemble_member(ProblemFunction problem, int member);
 /// The certified end state of a member, computed once per process.

@@ -45,8 +45,8 @@ std::shared_ptr<const OdeSystem> linear_oscillator(double omega_squared, double 
 Status steps_of(const Integrator& integrator, const std::shared_ptr<const OdeSystem>& system, int count,
                 Eigen::Vector2d& y) {
   NullObserver observer;
-  const Solution solution =
-      integrator.solve({system, 0.0, static_cast<double>(count), Vector(y), {}}, FixedStep{.step = 1.0}, observer);
+  const Solution solution = integrator.solve({system, 0.0, static_cast<double>(count), Vector(y), {}},
+                                             FixedStep{.step = 1.0}, observer);
   y = solution.state;
   return solution.status;
 }
@@ -66,7 +66,8 @@ Eigen::Matrix2d step_matrix(const Integrator& integrator, const std::shared_ptr<
 
 Eigen::Matrix2d evaluated(const std::vector<Float128>& p, const Eigen::Matrix2d& x) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (std::size_t k = p.size(); k-- > 0;) sum = sum * x + static_cast<double>(p[k]) * Eigen::Matrix2d::Identity();
+  for (std::size_t k = p.size(); k-- > 0;)
+    sum = sum * x + static_cast<double>(p[k]) * Eigen::Matrix2d::Identity();
   return sum;
 }
 
@@ -75,18 +76,21 @@ Eigen::Matrix2d evaluated(const schemes::StabilityFunction& R, const Eigen::Matr
   return evaluated(R.denominator, J).partialPivLu().solve(evaluated(R.numerator, J));
 }
 
-/// The largest difference of R(J) and the black box, relative to 1 + |R|, over matrices J with real and complex
-/// eigenvalues in both half-planes.
-double compare_runge_kutta(const Integrator& integrator, const schemes::StabilityFunction& R, Status& status) {
+/// The largest difference of R(J) and the black box, relative to 1 + |R|, over matrices J with real and
+/// complex eigenvalues in both half-planes.
+double compare_runge_kutta(const Integrator& integrator, const schemes::StabilityFunction& R,
+                           Status& status) {
   double largest = 0.0;
   const auto compare = [&](const std::shared_ptr<const OdeSystem>& system, const Eigen::Matrix2d& J) {
     const Eigen::Matrix2d expected = evaluated(R, J);
     const Eigen::Matrix2d found = step_matrix(integrator, system, status);
-    largest = std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
+    largest =
+        std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
   };
   const MethodInfo& info = integrator.info();
   if (!info.needs_second_order) {
-    const LinearFlow flows[] = {{-0.3, 0.2, -0.2, -0.3}, {-1.1, 0.7, -0.7, -1.1}, {0.4, -0.9, 0.9, 0.4}, {-2.5, 0.6, 0.0, -0.4}};
+    const LinearFlow flows[] = {
+        {-0.3, 0.2, -0.2, -0.3}, {-1.1, 0.7, -0.7, -1.1}, {0.4, -0.9, 0.9, 0.4}, {-2.5, 0.6, 0.0, -0.4}};
     for (const LinearFlow& flow : flows) {
       Eigen::Matrix2d J;
       J << flow.a, flow.b, flow.c, flow.d;
@@ -104,7 +108,8 @@ double compare_runge_kutta(const Integrator& integrator, const schemes::Stabilit
 }
 
 /// The same for a Nyström method on q̈ = −ω²q − 2δq̇ from its own coefficients.
-double compare_nystrom(const Integrator& integrator, const schemes::NystromValues<Float128>& t, Status& status) {
+double compare_nystrom(const Integrator& integrator, const schemes::NystromValues<Float128>& t,
+                       Status& status) {
   const Index s = t.stages;
   Matrix a_position(s, s), a_velocity = Matrix::Zero(s, s);
   Vector c(s), b_position(s), b_velocity(s);
@@ -120,7 +125,8 @@ double compare_nystrom(const Integrator& integrator, const schemes::NystromValue
     }
   }
   double largest = 0.0;
-  for (const auto& [omega_squared, delta] : {std::pair{0.5, 0.0}, {2.0, 0.0}, {1.25, 0.0625}, {0.25, 0.125}}) {
+  for (const auto& [omega_squared, delta] :
+       {std::pair{0.5, 0.0}, {2.0, 0.0}, {1.25, 0.0625}, {0.25, 0.125}}) {
     const auto system = linear_oscillator(omega_squared, delta);
     if (!why_not_applicable(integrator.info(), *system).empty()) continue;
     // k = −ω²(q e + v c + Ā k) − 2δ(v e + A k).
@@ -130,21 +136,23 @@ double compare_nystrom(const Integrator& integrator, const schemes::NystromValue
     const Vector by_position = lu.solve(Vector(-omega_squared * ones));
     const Vector by_velocity = lu.solve(Vector(-omega_squared * c - 2.0 * delta * ones));
     Eigen::Matrix2d expected;
-    expected << 1.0 + b_position.dot(by_position), 1.0 + b_position.dot(by_velocity), b_velocity.dot(by_position),
-        1.0 + b_velocity.dot(by_velocity);
+    expected << 1.0 + b_position.dot(by_position), 1.0 + b_position.dot(by_velocity),
+        b_velocity.dot(by_position), 1.0 + b_velocity.dot(by_velocity);
     const Eigen::Matrix2d found = step_matrix(integrator, system, status);
-    largest = std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
+    largest =
+        std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
   }
   return largest;
 }
 
 /// Residual of Σ α_j y_{n+j} = h λ Σ β_j y_{n+j} on a run of the code, after its start.
-double compare_multistep(const Integrator& integrator, const schemes::MultistepFormula& formula, Status& status) {
+double compare_multistep(const Integrator& integrator, const schemes::MultistepFormula& formula,
+                         Status& status) {
   const LinearFlow flow{-0.125, 0.25, -0.25, -0.125};
   TrajectoryRecorder recorder;
-  const Solution solution =
-      integrator.solve({std::make_shared<FunctorSystem<LinearFlow>>(2, flow), 0.0, 20.0, Vector{{1.0, -0.5}}, {}},
-                       FixedStep{.step = 1.0}, recorder);
+  const Solution solution = integrator.solve(
+      {std::make_shared<FunctorSystem<LinearFlow>>(2, flow), 0.0, 20.0, Vector{{1.0, -0.5}}, {}},
+      FixedStep{.step = 1.0}, recorder);
   status = solution.status;
   Eigen::Matrix2d J;
   J << flow.a, flow.b, flow.c, flow.d;
@@ -176,7 +184,8 @@ PropertyCheck agreement(const char* property, double difference, double allowed,
 
 /// ‖y‖ after many steps of ẏ = λy (as a 2×2 system that is normal: the norm is |R|^steps).
 double norm_after(const Integrator& integrator, double real, double imaginary, int steps) {
-  const auto system = std::make_shared<FunctorSystem<LinearFlow>>(2, LinearFlow{real, imaginary, -imaginary, real});
+  const auto system =
+      std::make_shared<FunctorSystem<LinearFlow>>(2, LinearFlow{real, imaginary, -imaginary, real});
   Eigen::Vector2d y{1.0, 0.0};
   const Status status = steps_of(integrator, system, steps, y);
   return status.ok() ? y.norm() : std::numeric_limits<double>::infinity();
@@ -193,10 +202,11 @@ constexpr double limit_window = 0.01;
 /// A limit beyond this counts as none.
 constexpr double farthest = 500.0;
 
-/// `growth(x)` is the factor per step that the coefficients predict, `norm(x, steps)` what the code makes of a start of
-/// size 1. Inside the limit it has to stay bounded, outside to grow by the predicted factor.
+/// `growth(x)` is the factor per step that the coefficients predict, `norm(x, steps)` what the code makes of
+/// a start of size 1. Inside the limit it has to stay bounded, outside to grow by the predicted factor.
 template <class Growth, class Norm>
-void check_limit(const char* property, double limit, Growth growth, Norm norm, std::vector<PropertyCheck>& checks) {
+void check_limit(const char* property, double limit, Growth growth, Norm norm,
+                 std::vector<PropertyCheck>& checks) {
   PropertyCheck check{.property = property, .finding = Finding::holds};
   check.derived = std::isinf(limit) ? "infinite" : fmt::format("{:.5g}", limit);
   constexpr int many_steps = 4000;
@@ -235,8 +245,8 @@ void check_limit(const char* property, double limit, Growth growth, Norm norm, s
       // The start need not lie on the growing mode: its share costs some powers of ten, no more.
       if (!(size >= bounded_below) || !(rate <= 1.1 * predicted + 1e-3)) {
         check.finding = Finding::fails;
-        check.reason = fmt::format("at {:.5g}: size {:.1e} after {} steps, predicted factor {:.8f} per step", outside, size,
-                                   count, strongest);
+        check.reason = fmt::format("at {:.5g}: size {:.1e} after {} steps, predicted factor {:.8f} per step",
+                                   outside, size, count, strongest);
       }
     }
   }
@@ -244,8 +254,10 @@ void check_limit(const char* property, double limit, Growth growth, Norm norm, s
 }
 
 std::optional<schemes::NystromValues<Float128>> nystrom_values(const schemes::SchemeData& data) {
-  if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&data)) return schemes::values<Float128>(*nystrom);
-  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&data)) return schemes::as_nystrom(*splitting);
+  if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&data))
+    return schemes::values<Float128>(*nystrom);
+  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&data))
+    return schemes::as_nystrom(*splitting);
   return std::nullopt;
 }
 
@@ -286,11 +298,16 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
   if (derived.stability && !info.needs_second_order) {
     const schemes::StabilityFunction& R = *derived.stability_function;
     check_limit(
-        "real stability interval", derived.stability->real_interval, [&](double x) { return std::abs(R({-x, 0.0})); },
+        "real stability interval", derived.stability->real_interval,
+        [&](double x) {
+          return std::abs(R({-x, 0.0}));
+        },
         [&](double x, int steps) { return norm_after(scheme.integrator, -x, 0.0, steps); }, checks);
     check_limit(
         "imaginary stability interval", derived.stability->imaginary_interval,
-        [&](double x) { return std::abs(R({0.0, x})); },
+        [&](double x) {
+          return std::abs(R({0.0, x}));
+        },
         [&](double x, int steps) { return norm_after(scheme.integrator, 0.0, x, steps); }, checks);
   }
   if (const auto nystrom = nystrom_values(scheme.data)) {
@@ -300,10 +317,12 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
         [&](double x, int steps) { return oscillation_after(scheme.integrator, x, steps); }, checks);
   }
   if (!info.is_a_stable && !info.is_l_stable) return;
-  // A-stability of the running code: bounded on the axes and on rays far out; L: one step far out kills everything.
+  // A-stability of the running code: bounded on the axes and on rays far out; L: one step far out kills
+  // everything.
   PropertyCheck check{.property = info.is_l_stable ? "L-stability" : "A-stability", .claimed = "yes"};
   if (derived.stability) {
-    const bool derived_too = info.is_l_stable ? derived.stability->is_l_stable : derived.stability->is_a_stable;
+    const bool derived_too =
+        info.is_l_stable ? derived.stability->is_l_stable : derived.stability->is_a_stable;
     check.derived = derived_too ? "yes" : "no";
   }
   bool bounded = true, ran = false;
@@ -342,8 +361,10 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
     return;
   }
   const bool vanishes = decay <= 1e-2;
-  check.measured = bounded ? (vanishes ? fmt::format("bounded, |R| = {:.1e} far out", decay) : "bounded") : "grows";
-  check.finding = bounded && (!info.is_l_stable || vanishes) && check.derived != "no" ? Finding::holds : Finding::fails;
+  check.measured =
+      bounded ? (vanishes ? fmt::format("bounded, |R| = {:.1e} far out", decay) : "bounded") : "grows";
+  check.finding =
+      bounded && (!info.is_l_stable || vanishes) && check.derived != "no" ? Finding::holds : Finding::fails;
   checks.push_back(check);
 }
 

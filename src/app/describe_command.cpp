@@ -34,7 +34,7 @@ std::string describe_method(const catalog::MethodEntry& entry) {
   line("stages", std::to_string(info.stages));
   line("kind", info.is_explicit ? "explicit" : "implicit");
   line("step", info.is_adaptive && info.has_fixed_step ? "fixed (--step) or adaptive (--rtol, --atol)"
-               : info.is_adaptive  ? "adaptive (--rtol, --atol)"
+               : info.is_adaptive                      ? "adaptive (--rtol, --atol)"
                : info.is_multistep ? "fixed, the interval has to be a whole number of steps"
                                    : "fixed (--step)");
   line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");

@@ -63,13 +63,12 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
         fmt::format("--step: method \"{}\" chooses its own steps, expected --rtol and --atol", info.name));
   }
   if (has_tolerances && !info.is_adaptive) {
-    throw InputError(
-        fmt::format("tolerances: method \"{}\" has a fixed step, expected --step", info.name));
+    throw InputError(fmt::format("tolerances: method \"{}\" has a fixed step, expected --step", info.name));
   }
   if (info.is_adaptive && !arguments.has_step) {
     if (!arguments.has_relative || !arguments.has_absolute) {
-      throw InputError(fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol{}", info.name,
-                                   info.has_fixed_step ? ", or --step for a constant step" : ""));
+      throw InputError(fmt::format("method \"{}\" chooses its own steps: expected --rtol and --atol{}",
+                                   info.name, info.has_fixed_step ? ", or --step for a constant step" : ""));
     }
     const auto check = [](const char* option, double value) {
       if (!std::isfinite(value) || value <= 0.0) {

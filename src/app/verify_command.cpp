@@ -64,8 +64,8 @@ std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsi
       results[i] = verify_method(calls[i]);
       const std::size_t finished = ++done;
       const std::lock_guard lock(output);
-      bar.update(static_cast<double>(finished) / static_cast<double>(calls.size()), static_cast<double>(finished),
-                 calls[i]);
+      bar.update(static_cast<double>(finished) / static_cast<double>(calls.size()),
+                 static_cast<double>(finished), calls[i]);
     }
   };
   std::vector<std::thread> threads;
@@ -101,8 +101,8 @@ std::string table(const std::vector<Verification>& results, bool all) {
   text.add_column("measured", TextTable::Align::left, measured);
   text.add_column("verdict", TextTable::Align::left, verdict);
   text.add_column("reason", TextTable::Align::left, reason);
-  return text.text() + fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n", results.size(), holds,
-                                   fails, skipped);
+  return text.text() + fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n",
+                                   results.size(), holds, fails, skipped);
 }
 
 std::string json(const std::vector<Verification>& results) {
@@ -134,7 +134,8 @@ int verify(const VerifyArguments& arguments) {
       if (entry.info.has_fixed_step) calls.push_back(entry.info.name);
     }
   }
-  for (const std::string& call : calls) catalog::make_method(call);  // an unknown name ends before anything runs
+  for (const std::string& call : calls)
+    catalog::make_method(call);  // an unknown name ends before anything runs
   const std::vector<Verification> results = verify_all(calls, arguments.jobs);
   fmt::print("{}", arguments.json ? json(results) : table(results, arguments.all));
   for (const Verification& result : results) {
@@ -149,9 +150,11 @@ int verify(const VerifyArguments& arguments) {
 
 void add_verify_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "verify", "Checks the claimed properties of the schemes: order, stability, symplecticity, conservation, ...");
+      "verify",
+      "Checks the claimed properties of the schemes: order, stability, symplecticity, conservation, ...");
   auto arguments = std::make_shared<VerifyArguments>();
-  command->add_option("--method", arguments->methods, "Only these methods (default: all that have a fixed step)")
+  command
+      ->add_option("--method", arguments->methods, "Only these methods (default: all that have a fixed step)")
       ->type_name("NAME");
   command->add_flag("--json", arguments->json, "As JSON");
   command->add_flag("--all", arguments->all, "Prints properties that do not apply as well");

@@ -12,7 +12,8 @@ namespace fw::integrators {
 /// Makes the state of a run with variable steps.
 using AdaptiveStepperFactory = std::function<std::unique_ptr<AdaptiveStepper>(const Ivp& ivp, Work& work)>;
 
-/// A hand-written scheme with an error estimate: runs with a constant step as well as with steps chosen by tolerances.
+/// A hand-written scheme with an error estimate: runs with a constant step as well as with steps chosen by
+/// tolerances.
 class AdaptiveIntegrator final : public Integrator {
  public:
   AdaptiveIntegrator(MethodInfo info, ControllerOptions options, AdaptiveStepperFactory make_stepper,

@@ -19,7 +19,8 @@ using schemes::TableauValues;
 
 class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
  public:
-  ExplicitRungeKuttaStepper(const TableauValues<double>& tableau, bool first_same_as_last, const Ivp& ivp, Work& work)
+  ExplicitRungeKuttaStepper(const TableauValues<double>& tableau, bool first_same_as_last, const Ivp& ivp,
+                            Work& work)
       : tableau_(tableau),
         first_same_as_last_(first_same_as_last),
         system_(*ivp.system),
@@ -97,7 +98,8 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
     for (int i = 1; i < s; ++i) {
       linear_combination<double>(y.data(), h, &tableau_.a[static_cast<std::size_t>(i * s)], pointers_.data(),
                                  static_cast<std::size_t>(i), stage_.data(), size);
-      system_.rhs(t + tableau_.c[static_cast<std::size_t>(i)] * h, stage_, slopes_[static_cast<std::size_t>(i)]);
+      system_.rhs(t + tableau_.c[static_cast<std::size_t>(i)] * h, stage_,
+                  slopes_[static_cast<std::size_t>(i)]);
       ++work_.rhs_evaluations;
     }
   }
@@ -132,7 +134,8 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
 };
 
 /// The same steps in binary128; the plain loops are the slow twin of the stepper above.
-std::vector<Float128> solve_extended(const TableauValues<Float128>& tableau, const Ivp& ivp, std::uint64_t steps) {
+std::vector<Float128> solve_extended(const TableauValues<Float128>& tableau, const Ivp& ivp,
+                                     std::uint64_t steps) {
   std::vector<Float128> y = initial_state_extended(ivp);
   std::vector<Float128> stage(y.size());
   const auto s = static_cast<std::size_t>(tableau.stages);

@@ -11,7 +11,8 @@ std::vector<Float128> run_extended_steps(const Ivp& ivp, std::uint64_t steps, co
   return y;
 }
 
-std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128& t, const std::vector<Float128>& y) {
+std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128& t,
+                                        const std::vector<Float128>& y) {
   const std::size_t n = y.size();
   const Float128 increment = 1e-11;
   std::vector<Float128> result(n * n), shifted = y, above(n), below(n);
@@ -34,7 +35,8 @@ void solve_extended_system(std::vector<Float128>& A, std::vector<Float128>& b) {
       if (abs(A[i * n + k]) > abs(A[pivot * n + k])) pivot = i;
     }
     if (pivot != k) {
-      std::swap_ranges(A.begin() + static_cast<std::ptrdiff_t>(k * n), A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n),
+      std::swap_ranges(A.begin() + static_cast<std::ptrdiff_t>(k * n),
+                       A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n),
                        A.begin() + static_cast<std::ptrdiff_t>(pivot * n));
       std::swap(b[k], b[pivot]);
     }

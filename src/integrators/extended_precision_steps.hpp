@@ -15,10 +15,11 @@ using ExtendedStep = std::function<void(const Float128& t, const Float128& h, st
 std::vector<Float128> run_extended_steps(const Ivp& ivp, std::uint64_t steps, const ExtendedStep& step);
 
 /// ∂f/∂y at (t, y), row by row, by central differences in binary128 (error about 1e-22 relative).
-std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128& t, const std::vector<Float128>& y);
+std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128& t,
+                                        const std::vector<Float128>& y);
 
-/// Solves A x = b in place (A row by row, overwritten; b becomes x) by elimination with partial pivoting. For the small
-/// systems on which orders are measured.
+/// Solves A x = b in place (A row by row, overwritten; b becomes x) by elimination with partial pivoting. For
+/// the small systems on which orders are measured.
 void solve_extended_system(std::vector<Float128>& A, std::vector<Float128>& b);
 
 }  // namespace fw::integrators

@@ -5,8 +5,9 @@
 
 namespace fw::integrators {
 
-/// The cubic polynomial that has the values y_n, y_{n+1} and the slopes f(t_n, y_n), f(t_{n+1}, y_{n+1}) at both ends
-/// of a step. Its error inside is O(h⁴) beside that of the ends [Hairer, Nørsett, Wanner 1993, II.6].
+/// The cubic polynomial that has the values y_n, y_{n+1} and the slopes f(t_n, y_n), f(t_{n+1}, y_{n+1}) at
+/// both ends of a step. Its error inside is O(h⁴) beside that of the ends [Hairer, Nørsett, Wanner 1993,
+/// II.6].
 class HermiteInterpolant {
  public:
   HermiteInterpolant(const OdeSystem& system, Work& work) : system_(system), work_(work) {}

@@ -7,9 +7,9 @@
 
 namespace fw::integrators {
 
-/// out = base + h Σ_j weight[j] · slope[j] over `count` slopes in one pass through memory: blocks that stay in the first
-/// level cache take all terms before the next block begins. The terms are added in their order, zero weights are
-/// skipped. `out` may be `base`. Works for double and Float128.
+/// out = base + h Σ_j weight[j] · slope[j] over `count` slopes in one pass through memory: blocks that stay
+/// in the first level cache take all terms before the next block begins. The terms are added in their order,
+/// zero weights are skipped. `out` may be `base`. Works for double and Float128.
 template <class S>
 void linear_combination(const S* base, const S& h, const S* weight, const S* const* slope, std::size_t count,
                         S* out, std::size_t size) {

@@ -96,8 +96,10 @@ class LinearMultistepStepper final : public Stepper {
   std::unique_ptr<Stepper> start_;
 };
 
-/// The formula in binary128. Implicit ones by fixed-point iteration down to rounding: for problems that are not stiff.
-std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, const Ivp& ivp, std::uint64_t steps) {
+/// The formula in binary128. Implicit ones by fixed-point iteration down to rounding: for problems that are
+/// not stiff.
+std::vector<Float128> solve_extended(const schemes::MultistepFormula& formula, const Ivp& ivp,
+                                     std::uint64_t steps) {
   const auto k = static_cast<std::size_t>(formula.steps());
   const bool is_explicit = formula.beta[k].value() == 0;
   const int order = std::max(1, schemes::order_of_accuracy(formula));
@@ -155,7 +157,8 @@ std::unique_ptr<Integrator> make_linear_multistep(const schemes::MultistepFormul
                   .formula = "sum_j alpha_j y_{n+j} = h sum_j beta_j f(t_{n+j}, y_{n+j})",
                   .reference = formula.reference};
   return std::make_unique<FixedStepIntegrator>(
-      std::move(info), [numbers](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
+      std::move(info),
+      [numbers](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
         return std::make_unique<LinearMultistepStepper>(numbers, ivp, work);
       },
       [formula](const Ivp& ivp, std::uint64_t steps) { return solve_extended(formula, ivp, steps); });

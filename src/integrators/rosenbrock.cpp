@@ -18,8 +18,8 @@ namespace {
 using schemes::RosenbrockTableau;
 
 /// The increment of the time derivative as a fraction of the step.
-/// Its truncation error, h⁴/4096² per step, stays below the error of the schemes of order 4 down to 1e-12, its rounding
-/// (4096 ε relative to f) as well.
+/// Its truncation error, h⁴/4096² per step, stays below the error of the schemes of order 4 down to 1e-12,
+/// its rounding (4096 ε relative to f) as well.
 constexpr double time_increment = 1.0 / 4096.0;
 
 /// The coefficients of the transformed form, computed in binary128.
@@ -185,7 +185,8 @@ struct ExtendedTableau {
   explicit ExtendedTableau(const RosenbrockTableau& tableau)
       : stages(tableau.b.size()), alpha(stages * stages, Float128(0)), gamma(stages * stages, Float128(0)) {
     for (std::size_t i = 0; i < stages; ++i) {
-      for (std::size_t j = 0; j < tableau.alpha[i].size(); ++j) alpha[i * stages + j] = tableau.alpha[i][j].value();
+      for (std::size_t j = 0; j < tableau.alpha[i].size(); ++j)
+        alpha[i * stages + j] = tableau.alpha[i][j].value();
       for (std::size_t j = 0; j <= i; ++j) gamma[i * stages + j] = tableau.gamma[i][j].value();
       b.push_back(tableau.b[i].value());
     }
@@ -193,8 +194,8 @@ struct ExtendedTableau {
 };
 
 /// One step in the form of the definition, with dense elimination: the slow twin of the stepper.
-void extended_step(const ExtendedTableau& tableau, const OdeSystem& system, const Float128& t, const Float128& h,
-                   std::vector<Float128>& y) {
+void extended_step(const ExtendedTableau& tableau, const OdeSystem& system, const Float128& t,
+                   const Float128& h, std::vector<Float128>& y) {
   const std::size_t n = y.size(), s = tableau.stages;
   const std::vector<Float128> J = extended_jacobian(system, t, y);
   std::vector<Float128> before(n), after(n), time_derivative(n);
@@ -252,13 +253,15 @@ std::unique_ptr<Integrator> make_rosenbrock(const RosenbrockTableau& tableau,
       "y' = y + sum_i b_i k_i";
   const ExtendedTableau exact(tableau);
   const ExtendedSolver extended = [exact](const Ivp& ivp, std::uint64_t steps) {
-    return run_extended_steps(ivp, steps, [&](const Float128& t, const Float128& h, std::vector<Float128>& y) {
-      extended_step(exact, *ivp.system, t, h, y);
-    });
+    return run_extended_steps(ivp, steps,
+                              [&](const Float128& t, const Float128& h, std::vector<Float128>& y) {
+                                extended_step(exact, *ivp.system, t, h, y);
+                              });
   };
   if (!info.is_adaptive) {
     return std::make_unique<FixedStepIntegrator>(
-        std::move(info), [transformed](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
+        std::move(info),
+        [transformed](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
           return std::make_unique<RosenbrockStepper>(transformed, ivp, work);
         },
         extended);

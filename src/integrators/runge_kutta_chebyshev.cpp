@@ -84,7 +84,8 @@ class ChebyshevStepper final : public Stepper {
     for (std::size_t j = 2; j <= static_cast<std::size_t>(r.stages); ++j) {
       system_.rhs(t + r.c[j - 1] * h, now_, slope_);
       ++work_.rhs_evaluations;
-      // In differences to y, whose weights 1 − μ, μ and ν sum to one: what rests stays at rest to the last bit.
+      // In differences to y, whose weights 1 − μ, μ and ν sum to one: what rests stays at rest to the last
+      // bit.
       next_ = y + r.mu[j] * (now_ - y) + r.nu[j] * (before_ - y) + (r.mu_tilde[j] * h) * slope_ +
               (r.gamma_tilde[j] * h) * first_slope_;
       before_.swap(now_);

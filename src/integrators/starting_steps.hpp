@@ -18,7 +18,8 @@ std::unique_ptr<Stepper> make_explicit_starting_steps(const Ivp& ivp, int order,
 /// damps what is stiff, as the scheme that it starts [Deuflhard 1985; Hairer, Wanner 1996, IV.9].
 std::unique_ptr<Stepper> make_implicit_starting_steps(const Ivp& ivp, int order, Work& work);
 
-/// One step of either in binary128, implicit Euler by fixed-point iteration (for problems that are not stiff).
+/// One step of either in binary128, implicit Euler by fixed-point iteration (for problems that are not
+/// stiff).
 void extended_starting_step(const OdeSystem& system, bool is_explicit, int order, const Float128& t,
                             const Float128& h, std::vector<Float128>& y);
 

@@ -5,11 +5,12 @@
 
 namespace fw::integrators {
 
-double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error, ConstVectorRef y,
-                           ConstVectorRef y_new) {
+double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error,
+                           ConstVectorRef y, ConstVectorRef y_new) {
   // One pass without temporaries: this runs once per step over the whole state.
-  const auto scaled = error.array() / (tolerances.absolute_tolerance +
-                                       tolerances.relative_tolerance * y.array().abs().max(y_new.array().abs()));
+  const auto scaled =
+      error.array() / (tolerances.absolute_tolerance +
+                       tolerances.relative_tolerance * y.array().abs().max(y_new.array().abs()));
   if (norm == ErrorNorm::maximum) {
     // Eigen's maximum may pass over NaN, the sum of squares does not.
     return std::isfinite(scaled.square().sum()) ? scaled.abs().maxCoeff()

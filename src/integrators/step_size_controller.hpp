@@ -29,8 +29,8 @@ struct ControllerOptions {
 };
 
 /// The norm of the error in units of the tolerance: a step with a value ≤ 1 is accepted.
-double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error, ConstVectorRef y,
-                           ConstVectorRef y_new);
+double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error,
+                           ConstVectorRef y, ConstVectorRef y_new);
 
 /// The memory of a controller over a run.
 class StepSizeController {

@@ -19,9 +19,9 @@ class Stepper {
 /// A stepper that estimates its error, so that its steps can be chosen.
 class AdaptiveStepper : public Stepper {
  public:
-  /// Tries the step from (t, y) to t + h: writes the solution of higher standing into `y_new` and its difference from
-  /// the embedded one into `error`. May be called again from the same (t, y) with a smaller h. A failure that a
-  /// smaller step may cure (Newton, a value that is not finite) is a Status as well.
+  /// Tries the step from (t, y) to t + h: writes the solution of higher standing into `y_new` and its
+  /// difference from the embedded one into `error`. May be called again from the same (t, y) with a smaller
+  /// h. A failure that a smaller step may cure (Newton, a value that is not finite) is a Status as well.
   virtual Status attempt(double t, double h, ConstVectorRef y, VectorRef y_new, VectorRef error) = 0;
 
   /// The last attempt has become the state: what it knows of the end (FSAL) serves the next step.
@@ -58,9 +58,9 @@ class FixedStepIntegrator final : public Integrator {
   ExtendedSolver extended_solver_;
 };
 
-/// The shared loop: every step of `control` with the stepper that `make_stepper` makes. Inside a step the observer
-/// can interpolate by the stepper's dense output or the cubic Hermite polynomial (slopes at both ends, which
-/// `Work` counts).
+/// The shared loop: every step of `control` with the stepper that `make_stepper` makes. Inside a step the
+/// observer can interpolate by the stepper's dense output or the cubic Hermite polynomial (slopes at both
+/// ends, which `Work` counts).
 Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp,
                          const FixedStep& control, Observer& observer);
 

@@ -8,7 +8,8 @@ namespace fw::integrators {
 
 MethodInfo tableau_info(const schemes::ButcherTableau& tableau, const std::string& family) {
   schemes::check_tableau(tableau);
-  MethodInfo info{.name = tableau.name, .title = tableau.title, .family = family, .reference = tableau.reference};
+  MethodInfo info{
+      .name = tableau.name, .title = tableau.title, .family = family, .reference = tableau.reference};
   info.order = info.order_with_velocity_forces = schemes::order_of_accuracy(tableau);
   info.embedded_order = schemes::embedded_order(tableau);
   info.is_adaptive = !tableau.b_embedded.empty();

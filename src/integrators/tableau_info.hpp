@@ -7,8 +7,8 @@
 
 namespace fw::integrators {
 
-/// What a Runge–Kutta tableau says of its scheme: names, orders, stability and geometry as they follow from the
-/// coefficients. Engines fill in stages and formula.
+/// What a Runge–Kutta tableau says of its scheme: names, orders, stability and geometry as they follow from
+/// the coefficients. Engines fill in stages and formula.
 MethodInfo tableau_info(const schemes::ButcherTableau& tableau, const std::string& family);
 
 }  // namespace fw::integrators

@@ -33,11 +33,12 @@ struct MethodInfo {
   bool is_multistep = false;
   bool is_adaptive = false;    ///< can choose its own steps from tolerances
   bool has_fixed_step = true;  ///< can run with a constant step
-  /// A step depends on more than (t, y), an acceleration for example: a single step says little of the scheme.
+  /// A step depends on more than (t, y), an acceleration for example: a single step says little of the
+  /// scheme.
   bool carries_more_than_state = false;
-  int embedded_order = 0;      ///< order of the solution that the error estimate compares with; 0: none
-  bool is_symplectic = false;  ///< for forces f(t, q) that have a potential
-  bool is_symmetric = false;   ///< equal to its adjoint: reversible in time where the problem is
+  int embedded_order = 0;         ///< order of the solution that the error estimate compares with; 0: none
+  bool is_symplectic = false;     ///< for forces f(t, q) that have a potential
+  bool is_symmetric = false;      ///< equal to its adjoint: reversible in time where the problem is
   bool conserves_energy = false;  ///< of systems without damping, exactly
   bool is_a_stable = false;
   bool is_l_stable = false;
@@ -47,8 +48,8 @@ struct MethodInfo {
   bool needs_force_splitting = false;  ///< works where forces come in a stiff and a soft part
   /// What iterative solvers leave of their equations, relative: conservation holds to it. 0: rounding.
   double iteration_tolerance = 0.0;
-  std::string formula{};               ///< one step in formula
-  std::string reference{};             ///< literature
+  std::string formula{};    ///< one step in formula
+  std::string reference{};  ///< literature
 };
 
 /// Why a scheme cannot run on this system, as a clause for people ("the method needs ..."); empty if it can.

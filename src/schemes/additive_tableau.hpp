@@ -6,8 +6,9 @@
 
 namespace fw::schemes {
 
-/// An additive (implicit–explicit) Runge–Kutta method for ẏ = f_E(t, y) + f_I(t, y): an explicit tableau for f_E and
-/// a diagonally implicit one for f_I with the same nodes c [Ascher, Ruuth, Spiteri 1997; Kennedy, Carpenter 2003].
+/// An additive (implicit–explicit) Runge–Kutta method for ẏ = f_E(t, y) + f_I(t, y): an explicit tableau for
+/// f_E and a diagonally implicit one for f_I with the same nodes c [Ascher, Ruuth, Spiteri 1997; Kennedy,
+/// Carpenter 2003].
 struct AdditiveTableau {
   std::string name{};
   std::string title{};

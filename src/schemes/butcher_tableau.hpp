@@ -7,8 +7,8 @@
 
 namespace fw::schemes {
 
-/// A Runge–Kutta method as data: k_i = f(t + c_i h, y + h Σ_j a_ij k_j), y' = y + h Σ_i b_i k_i with the nodes
-/// c_i = Σ_j a_ij [Hairer, Nørsett, Wanner 1993, II.1]. Everything else that is said of it is derived.
+/// A Runge–Kutta method as data: k_i = f(t + c_i h, y + h Σ_j a_ij k_j), y' = y + h Σ_i b_i k_i with the
+/// nodes c_i = Σ_j a_ij [Hairer, Nørsett, Wanner 1993, II.1]. Everything else that is said of it is derived.
 struct ButcherTableau {
   std::string name{};
   std::string title{};
@@ -40,7 +40,8 @@ struct TableauValues {
 template <class S>
 TableauValues<S> values(const ButcherTableau& tableau);
 
-/// The largest relative uncertainty of a coefficient (see `Coefficient::uncertainty`), at least that of binary128.
+/// The largest relative uncertainty of a coefficient (see `Coefficient::uncertainty`), at least that of
+/// binary128.
 double uncertainty(const ButcherTableau& tableau);
 
 /// Whether every coefficient is an exact rational.

@@ -40,11 +40,13 @@ struct Propagation {
 
 class OscillatorMatrix {
  public:
-  explicit OscillatorMatrix(const NystromValues<Float128>& t) : s_(t.stages), A_(s_, s_), stage_(s_, 2), out_(2, s_) {
+  explicit OscillatorMatrix(const NystromValues<Float128>& t)
+      : s_(t.stages), A_(s_, s_), stage_(s_, 2), out_(2, s_) {
     for (Index i = 0; i < s_; ++i) {
       const auto k = static_cast<std::size_t>(i);
       for (Index j = 0; j < s_; ++j) {
-        A_(i, j) = static_cast<double>(t.a_position[k * static_cast<std::size_t>(s_) + static_cast<std::size_t>(j)]);
+        A_(i, j) =
+            static_cast<double>(t.a_position[k * static_cast<std::size_t>(s_) + static_cast<std::size_t>(j)]);
       }
       stage_(i, 0) = 1.0;
       stage_(i, 1) = static_cast<double>(t.c[k]);
@@ -189,8 +191,8 @@ bool is_symmetric(const ButcherTableau& tableau) {
 }
 
 bool is_symmetric(const NystromValues<Float128>& t) {
-  // The adjoint method has c* = 1 − c, b* = b, b̄* = b − b̄, ā*_ij = (1 − c_i) b_j − b̄_j + ā_ij with the stages in
-  // reverse order.
+  // The adjoint method has c* = 1 − c, b* = b, b̄* = b − b̄, ā*_ij = (1 − c_i) b_j − b̄_j + ā_ij with the stages
+  // in reverse order.
   const auto s = static_cast<std::size_t>(t.stages);
   for (std::size_t i = 0; i < s; ++i) {
     const std::size_t r = s - 1 - i;

@@ -9,24 +9,25 @@ namespace fw::schemes {
 
 /// A scheme on the oscillator q̈ = −ω²q, as the 2×2 matrix by which it multiplies (q, hv), z = hω.
 struct OscillatorStability {
-  double interval = 0.0;     ///< largest z up to which the matrix stays power-bounded
-  int dispersion_order = 0;  ///< phase per step = z + O(z^{order+1})
-  int dissipation_order = 0; ///< √det = 1 + O(z^{order+1}); −1: det = 1, nothing is dissipated
+  double interval = 0.0;      ///< largest z up to which the matrix stays power-bounded
+  int dispersion_order = 0;   ///< phase per step = z + O(z^{order+1})
+  int dissipation_order = 0;  ///< √det = 1 + O(z^{order+1}); −1: det = 1, nothing is dissipated
 };
 
 /// What follows from the coefficients of a scheme; empty where a notion does not apply.
 struct DerivedProperties {
   std::optional<int> order{};
   std::optional<int> order_with_velocity_forces{};
-  std::optional<int> embedded_order{};    ///< only where there is an embedded solution
+  std::optional<int> embedded_order{};  ///< only where there is an embedded solution
   std::optional<int> stage_order{};
   std::optional<int> quadrature_order{};  ///< ẏ = g(t) is integrated with this order
   std::optional<double> principal_error{};
-  std::optional<bool> first_same_as_last{};     ///< the last stage is the new state: one evaluation less per step
-  std::optional<bool> stiffly_accurate{};       ///< a_sj = b_j
-  std::optional<bool> algebraically_stable{};   ///< b ≥ 0 and BA + AᵀB − bbᵀ ≥ 0: B-stable [HW 1996, IV.12]
-  std::optional<bool> symplectic{};             ///< for forces f(t, q) of Nyström type [HLW 2006, VI.4]
-  std::optional<bool> symmetric{};              ///< equal to its adjoint [HLW 2006, V.2]
+  std::optional<bool>
+      first_same_as_last{};                ///< the last stage is the new state: one evaluation less per step
+  std::optional<bool> stiffly_accurate{};  ///< a_sj = b_j
+  std::optional<bool> algebraically_stable{};  ///< b ≥ 0 and BA + AᵀB − bbᵀ ≥ 0: B-stable [HW 1996, IV.12]
+  std::optional<bool> symplectic{};            ///< for forces f(t, q) of Nyström type [HLW 2006, VI.4]
+  std::optional<bool> symmetric{};             ///< equal to its adjoint [HLW 2006, V.2]
   std::optional<StabilityFunction> stability_function{};
   std::optional<LinearStability> stability{};
   std::optional<OscillatorStability> oscillator{};

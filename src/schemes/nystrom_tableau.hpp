@@ -17,8 +17,8 @@ struct NystromTableau {
   std::vector<CoefficientRow> A_position{};  ///< ā, one row per stage; missing entries are zero
   /// a, one row per stage; empty where the method is for g(t, q) only.
   std::vector<CoefficientRow> A_velocity{};
-  CoefficientRow b_position{};  ///< b̄
-  CoefficientRow b_velocity{};  ///< b
+  CoefficientRow b_position{};                                  ///< b̄
+  CoefficientRow b_velocity{};                                  ///< b
   CoefficientRow b_position_embedded{}, b_velocity_embedded{};  ///< empty: none
   std::string reference{};
 
@@ -42,7 +42,8 @@ NystromValues<S> values(const NystromTableau& tableau);
 /// See `uncertainty(const ButcherTableau&)`.
 double uncertainty(const NystromTableau& tableau);
 
-/// A Runge–Kutta method applied to (q, v)' = (v, g): ā = A², b̄ = Aᵀb, so that one set of conditions serves both.
+/// A Runge–Kutta method applied to (q, v)' = (v, g): ā = A², b̄ = Aᵀb, so that one set of conditions serves
+/// both.
 template <class S>
 NystromValues<S> as_nystrom(const TableauValues<S>& tableau);
 

@@ -94,7 +94,8 @@ NystromValues<long double> in_long_double(const NystromValues<Float128>& values)
 /// Trees with velocity forces are many (thousands at order 8), so they are decided in 64-bit precision.
 int nystrom_order(const NystromValues<Float128>& values, bool velocity_forces, double uncertainty) {
   if (!velocity_forces) {
-    return order_of_weights(values, values.b_position, values.b_velocity, false, condition_safety * uncertainty)
+    return order_of_weights(values, values.b_position, values.b_velocity, false,
+                            condition_safety * uncertainty)
         .least();
   }
   if (values.a_velocity.empty()) return 0;
@@ -146,7 +147,8 @@ int rosenbrock_order(const RosenbrockTableau& tableau, const std::vector<Float12
   std::vector<std::vector<Float128>> by_alpha, by_beta;
   for (const RootedTree& tree : trees) {
     std::vector<Float128> phi(m.stages, Float128(1));
-    // A vertex with one branch meets J k and f' alike: β; one with several meets f'' of the arguments only: α.
+    // A vertex with one branch meets J k and f' alike: β; one with several meets f'' of the arguments only:
+    // α.
     const auto& inner = tree.children.size() == 1 ? by_beta : by_alpha;
     for (int child : tree.children) multiply_into(phi, inner[static_cast<std::size_t>(child)]);
     if (!is_met(b, phi, reciprocal<Float128>(tree.density), allowed)) return tree.order - 1;
@@ -159,8 +161,8 @@ int rosenbrock_order(const RosenbrockTableau& tableau, const std::vector<Float12
 int additive_order(const AdditiveTableau& tableau, bool embedded) {
   const TableauValues<Float128> parts[] = {values<Float128>(tableau.explicit_part),
                                            values<Float128>(tableau.implicit_part)};
-  const double allowed = condition_safety * std::max(uncertainty(tableau.explicit_part),
-                                                     uncertainty(tableau.implicit_part));
+  const double allowed =
+      condition_safety * std::max(uncertainty(tableau.explicit_part), uncertainty(tableau.implicit_part));
   const std::vector<ColouredTree>& trees = coloured_trees(highest_additive_order);
   std::vector<std::vector<Float128>> inner;
   for (const ColouredTree& tree : trees) {
@@ -209,14 +211,17 @@ NystromOrder order_of_weights(const NystromValues<S>& tableau, const std::vector
       const NystromTree& tree = trees[k];
       std::vector<S> phi(s, S(1));
       for (int leaf = 0; leaf < tree.velocity_leaves; ++leaf) multiply_into(phi, tableau.c);
-      for (int child : tree.through_position) multiply_into(phi, by_position[static_cast<std::size_t>(child)]);
-      for (int child : tree.through_velocity) multiply_into(phi, by_velocity[static_cast<std::size_t>(child)]);
+      for (int child : tree.through_position)
+        multiply_into(phi, by_position[static_cast<std::size_t>(child)]);
+      for (int child : tree.through_velocity)
+        multiply_into(phi, by_velocity[static_cast<std::size_t>(child)]);
       // `exact` is the reciprocal of a whole number.
       const S exact = S(1) / S(static_cast<std::int64_t>(std::llround(1.0 / tree.exact)));
       if (tree.order <= result.velocity && !is_met(b_velocity, phi, exact, allowed)) {
         result.velocity = tree.order - 1;
       }
-      if (tree.order + 1 <= result.position && !is_met(b_position, phi, S(exact / (tree.order + 1)), allowed)) {
+      if (tree.order + 1 <= result.position &&
+          !is_met(b_position, phi, S(exact / (tree.order + 1)), allowed)) {
         result.position = tree.order;
       }
       by_position.push_back(product(tableau.a_position, phi));

@@ -104,7 +104,8 @@ std::string text_of(const ButcherTableau& t) {
   for (std::size_t i = 0; i < s; ++i) grid.add(node_text(t.A[i]), t.A[i], s);
   grid.add("b", t.b, s);
   if (!t.b_embedded.empty()) grid.add("b^", t.b_embedded, s);
-  return "Butcher tableau (c | A, then the weights b and, where there are any, the embedded b^)\n" + grid.text();
+  return "Butcher tableau (c | A, then the weights b and, where there are any, the embedded b^)\n" +
+         grid.text();
 }
 
 std::string text_of(const NystromTableau& t) {
@@ -118,7 +119,8 @@ std::string text_of(const NystromTableau& t) {
     grid.add("b^ (v)", t.b_velocity_embedded, s);
   }
   for (std::size_t i = 0; i < t.A_velocity.size(); ++i) grid.add("a (v)", t.A_velocity[i], s);
-  return "Nystroem tableau (c | A of the positions, the weights of q and v, then A of the velocities)\n" + grid.text();
+  return "Nystroem tableau (c | A of the positions, the weights of q and v, then A of the velocities)\n" +
+         grid.text();
 }
 
 std::string text_of(const SplittingScheme& t) {
@@ -139,8 +141,8 @@ std::string text_of(const RosenbrockTableau& t) {
 }
 
 std::string text_of(const AdditiveTableau& t) {
-  return "Explicit part (soft forces): " + text_of(t.explicit_part) + "Implicit part (stiff forces): " +
-         text_of(t.implicit_part);
+  return "Explicit part (soft forces): " + text_of(t.explicit_part) +
+         "Implicit part (stiff forces): " + text_of(t.implicit_part);
 }
 
 std::string text_of(const MultistepFormula& t) {

@@ -16,11 +16,11 @@ const List& remembered(std::map<Key, List>& lists, std::mutex& mutex, const Key&
   return found->second;  // nodes of a map stay where they are
 }
 
-/// Calls `sink(chosen)` for every multiset of places with the given weights that sums to `remaining`; places are not
-/// decreasing. `weight[p]` is what place p adds.
+/// Calls `sink(chosen)` for every multiset of places with the given weights that sums to `remaining`; places
+/// are not decreasing. `weight[p]` is what place p adds.
 template <class Sink>
-void for_each_multiset(const std::vector<int>& weight, int remaining, std::size_t from, std::vector<int>& chosen,
-                       const Sink& sink) {
+void for_each_multiset(const std::vector<int>& weight, int remaining, std::size_t from,
+                       std::vector<int>& chosen, const Sink& sink) {
   if (remaining == 0) {
     sink(chosen);
     return;
@@ -103,8 +103,8 @@ std::vector<ColouredTree> make_coloured_trees(int highest_order) {
     std::vector<int> chosen;
     for_each_multiset(weight, order - 1, 0, chosen, [&](const std::vector<int>& children) {
       for (int colour = 0; colour < 2; ++colour) {
-        ColouredTree tree{.order = order, .colour = colour, .children = children,
-                          .density = static_cast<double>(order)};
+        ColouredTree tree{
+            .order = order, .colour = colour, .children = children, .density = static_cast<double>(order)};
         for (int child : children) tree.density *= trees[static_cast<std::size_t>(child)].density;
         found.push_back(std::move(tree));
       }

@@ -5,12 +5,13 @@
 
 namespace fw::schemes {
 
-/// A rooted tree τ = [τ_1, …, τ_m]: one order condition of a Runge–Kutta method [Hairer, Nørsett, Wanner 1993, II.2].
+/// A rooted tree τ = [τ_1, …, τ_m]: one order condition of a Runge–Kutta method [Hairer, Nørsett, Wanner
+/// 1993, II.2].
 struct RootedTree {
-  int order = 1;             ///< ρ(τ), number of vertices
+  int order = 1;                ///< ρ(τ), number of vertices
   std::vector<int> children{};  ///< places of τ_1 … τ_m in the list, not decreasing
-  double density = 1.0;      ///< γ(τ) = ρ(τ) Π γ(τ_i), exact as long as it is below 2⁵³
-  double symmetry = 1.0;     ///< σ(τ) = Π σ(τ_i) · Π multiplicity!
+  double density = 1.0;         ///< γ(τ) = ρ(τ) Π γ(τ_i), exact as long as it is below 2⁵³
+  double symmetry = 1.0;        ///< σ(τ) = Π σ(τ_i) · Π multiplicity!
 };
 
 /// All rooted trees up to an order ≤ 12, orders ascending: 1, 1, 2, 4, 9, 20, 48, 115, 286, 719, … of each.
@@ -23,10 +24,11 @@ const std::vector<RootedTree>& rooted_trees(int highest_order);
 /// [Hairer, Nørsett, Wanner 1993, II.14].
 struct NystromTree {
   int order = 1;
-  int velocity_leaves = 0;            ///< children of the first kind
+  int velocity_leaves = 0;              ///< children of the first kind
   std::vector<int> through_position{};  ///< places of the children of the second kind, not decreasing
   std::vector<int> through_velocity{};  ///< and of the third
-  double exact = 1.0;  ///< coefficient of h^order in the exact v; that of h^{order+1} in q is exact/(order + 1)
+  double exact =
+      1.0;  ///< coefficient of h^order in the exact v; that of h^{order+1} in q is exact/(order + 1)
 };
 
 /// All such trees up to an order, ascending; without the third kind where forces depend on position only.

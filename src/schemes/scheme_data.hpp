@@ -12,7 +12,7 @@
 namespace fw::schemes {
 
 /// What defines a scheme; std::monostate where it is not given by coefficients.
-using SchemeData = std::variant<std::monostate, ButcherTableau, NystromTableau, SplittingScheme, RosenbrockTableau,
-                                AdditiveTableau, MultistepFormula>;
+using SchemeData = std::variant<std::monostate, ButcherTableau, NystromTableau, SplittingScheme,
+                                RosenbrockTableau, AdditiveTableau, MultistepFormula>;
 
 }  // namespace fw::schemes

@@ -123,14 +123,16 @@ void remove_common_factors(StabilityFunction& R, const std::vector<Float128>& ca
   }
 }
 
-StabilityFunction from_matrices(const std::vector<Float128>& a, const std::vector<Float128>& b, double uncertainty) {
+StabilityFunction from_matrices(const std::vector<Float128>& a, const std::vector<Float128>& b,
+                                double uncertainty) {
   const std::size_t s = b.size();
   std::vector<Float128> reduced = a, diagonal;
   for (std::size_t i = 0; i < s; ++i) {
     for (std::size_t j = 0; j < s; ++j) reduced[i * s + j] -= b[j];
     diagonal.push_back(a[i * s + i]);
   }
-  StabilityFunction R{reversed_characteristic_polynomial(reduced, s), reversed_characteristic_polynomial(a, s)};
+  StabilityFunction R{reversed_characteristic_polynomial(reduced, s),
+                      reversed_characteristic_polynomial(a, s)};
   const double allowed = std::max(negligible, 1e3 * uncertainty);
   trim(R.numerator, allowed);
   trim(R.denominator, allowed);
@@ -138,7 +140,8 @@ StabilityFunction from_matrices(const std::vector<Float128>& a, const std::vecto
   return R;
 }
 
-/// |Q(iy)|² − |P(iy)|² as a polynomial in y²: the E-polynomial, ≥ 0 where |R(iy)| ≤ 1 [Hairer, Wanner 1996, IV.3].
+/// |Q(iy)|² − |P(iy)|² as a polynomial in y²: the E-polynomial, ≥ 0 where |R(iy)| ≤ 1 [Hairer, Wanner 1996,
+/// IV.3].
 Polynomial e_polynomial(const StabilityFunction& R) {
   const auto square_on_axis = [](const Polynomial& p) {
     // p(iy) = even(−y²) + i y odd(−y²).
@@ -160,15 +163,16 @@ Polynomial e_polynomial(const StabilityFunction& R) {
   if (e.size() < p.size()) e.resize(p.size(), Float128(0));
   // A coefficient that the subtraction has cancelled is zero.
   for (std::size_t k = 0; k < e.size(); ++k) {
-    const Float128 before = k < p.size() ? std::max(Float128(abs(e[k])), Float128(abs(p[k]))) : Float128(abs(e[k]));
+    const Float128 before =
+        k < p.size() ? std::max(Float128(abs(e[k])), Float128(abs(p[k]))) : Float128(abs(e[k]));
     if (k < p.size()) e[k] -= p[k];
     if (abs(e[k]) <= 1e-14 * before) e[k] = 0;
   }
   return e;
 }
 
-/// The first x > 0 at which `is_stable` fails on a geometric grid, sharpened by bisection; infinite if none is found
-/// up to `farthest`.
+/// The first x > 0 at which `is_stable` fails on a geometric grid, sharpened by bisection; infinite if none
+/// is found up to `farthest`.
 template <class Predicate>
 double first_failure(Predicate is_stable, double nearest, double farthest) {
   constexpr double ratio = 1.002;

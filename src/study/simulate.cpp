@@ -193,8 +193,7 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
-      if (const std::string why =
-              why_not_applicable(integrator->info(), *problem->problem.ivp.system);
+      if (const std::string why = why_not_applicable(integrator->info(), *problem->problem.ivp.system);
           !why.empty()) {
         spec.fail("methods", {i}, fmt::format("\"{}\" (problem \"{}\"): {}", call, problem->label, why));
       }
