@@ -4,9 +4,11 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/methods_page.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "catalog/study_kinds.hpp"
+#include "core/error.hpp"
 #include "scene/generators.hpp"
 #include "store/json_writer.hpp"
 #include "store/text_table.hpp"
@@ -23,6 +25,7 @@ const std::string oracle_family = "oracle";
 std::string order_text(const MethodInfo& info) {
   if (info.order == 0) return "variable";
   if (info.order == info.order_with_velocity_forces) return std::to_string(info.order);
+  if (info.order_with_velocity_forces == 0) return fmt::format("{} (f(t, q) only)", info.order);
   return fmt::format("{} ({} with dampers)", info.order, info.order_with_velocity_forces);
 }
 
@@ -153,10 +156,18 @@ void add_list_command(CLI::App& app, Action& action) {
       ->required()
       ->check(CLI::IsMember({"methods", "problems", "scenes", "studies", "oracles"}))
       ->type_name("methods|problems|scenes|studies|oracles");
-  command->add_flag("--json", *json, "As JSON");
-  command->callback([what, json, &action] {
-    action = [what, json] {
-      fmt::print("{}", list(*what, *json));
+  auto* json_flag = command->add_flag("--json", *json, "As JSON");
+  auto markdown = std::make_shared<bool>(false);
+  command
+      ->add_flag("--markdown", *markdown,
+                 "Methods as tables in Markdown, with formulas, limits and literature")
+      ->excludes(json_flag);
+  command->callback([what, json, markdown, &action] {
+    action = [what, json, markdown] {
+      if (*markdown && *what != "methods") {
+        throw InputError(fmt::format("--markdown: found \"{}\", expected \"methods\"", *what));
+      }
+      fmt::print("{}", *markdown ? methods_page() : list(*what, *json));
       return exit_success;
     };
   });

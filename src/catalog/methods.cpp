@@ -304,6 +304,12 @@ std::vector<MethodEntry> make_list() {
          tableau,
          [&tableau](const MethodOptions&) { return integrators::make_fully_implicit_runge_kutta(tableau); }});
   }
+  for (const schemes::NystromTableau& tableau : schemes::implicit_nystrom_tableaus()) {
+    list.push_back(
+        {integrators::make_implicit_nystrom(tableau)->info(), {}, tableau, [&tableau](const MethodOptions&) {
+           return integrators::make_implicit_nystrom(tableau);
+         }});
+  }
   for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_rosenbrock));
   }

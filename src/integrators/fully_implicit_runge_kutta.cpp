@@ -5,10 +5,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "integrators/extended_precision_steps.hpp"
 #include "integrators/extended_runge_kutta.hpp"
 #include "integrators/stage_matrix.hpp"
 #include "integrators/stepper.hpp"
 #include "integrators/tableau_info.hpp"
+#include "schemes/derived_properties.hpp"
+#include "schemes/order_conditions.hpp"
 
 namespace fw::integrators {
 
@@ -241,6 +244,63 @@ class SecondOrderStepper final : public CoupledStepper {
   double time_ = 0.0, step_ = 0.0;
 };
 
+/// The same reduction of a Nyström method, whose coefficients are those of the reduction already.
+CoupledTableau couple(const schemes::NystromTableau& tableau) {
+  const schemes::NystromValues<double> numbers = schemes::values<double>(tableau);
+  if (numbers.a_velocity.empty()) {
+    throw std::logic_error("Nyström tableau \"" + tableau.name +
+                           "\": coupled stages need a matrix of the velocities");
+  }
+  CoupledTableau result;
+  result.values.stages = numbers.stages;
+  result.values.a = numbers.a_velocity;
+  result.values.b = numbers.b_velocity;
+  result.values.c = numbers.c;
+  result.values.name = tableau.name;
+  result.a_squared = numbers.a_position;
+  result.b_position = numbers.b_position;
+  return result;
+}
+
+/// One step in binary128 by fixed-point iteration on the accelerations: for problems that are not stiff.
+void extended_nystrom_step(const schemes::NystromValues<Float128>& tableau, const OdeSystem& system,
+                           const Float128& t, const Float128& h, std::vector<Float128>& y) {
+  const auto s = static_cast<std::size_t>(tableau.stages);
+  const std::size_t n = y.size() / 2;
+  std::vector<std::vector<Float128>> k(s, std::vector<Float128>(n, Float128(0)));
+  std::vector<Float128> state(2 * n), slope(2 * n);
+  constexpr int most_iterations = 200;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    Float128 change = 0, size = 0;
+    for (std::size_t i = 0; i < s; ++i) {
+      for (std::size_t d = 0; d < n; ++d) {
+        state[d] = y[d] + tableau.c[i] * h * y[n + d];
+        state[n + d] = y[n + d];
+      }
+      for (std::size_t j = 0; j < s; ++j) {
+        for (std::size_t d = 0; d < n; ++d) {
+          state[d] += h * h * tableau.a_position[i * s + j] * k[j][d];
+          state[n + d] += h * tableau.a_velocity[i * s + j] * k[j][d];
+        }
+      }
+      system.rhs(Float128(t + tableau.c[i] * h), state, slope);
+      for (std::size_t d = 0; d < n; ++d) {
+        change = std::max(change, Float128(abs(slope[n + d] - k[i][d])));
+        size = std::max(size, Float128(abs(slope[n + d])));
+        k[i][d] = slope[n + d];
+      }
+    }
+    if (change <= 1e-31 * size) break;
+  }
+  for (std::size_t d = 0; d < n; ++d) y[d] += h * y[n + d];
+  for (std::size_t i = 0; i < s; ++i) {
+    for (std::size_t d = 0; d < n; ++d) {
+      y[d] += h * h * tableau.b_position[i] * k[i][d];
+      y[n + d] += h * tableau.b_velocity[i] * k[i][d];
+    }
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<Integrator> make_fully_implicit_runge_kutta(const ButcherTableau& tableau,
@@ -257,6 +317,37 @@ std::unique_ptr<Integrator> make_fully_implicit_runge_kutta(const ButcherTableau
         return std::make_unique<FirstOrderStepper>(coupled, options, ivp, work);
       },
       make_extended_runge_kutta(tableau));
+}
+
+std::unique_ptr<Integrator> make_implicit_nystrom(const schemes::NystromTableau& tableau,
+                                                  const ImplicitOptions& options) {
+  const CoupledTableau coupled = couple(tableau);
+  const schemes::NystromValues<Float128> exact = schemes::values<Float128>(tableau);
+  MethodInfo info{.name = tableau.name,
+                  .title = tableau.title,
+                  .family = "partitioned implicit Runge-Kutta",
+                  .order = schemes::order_of_accuracy(tableau, false),
+                  .order_with_velocity_forces = schemes::order_of_accuracy(tableau, true),
+                  .stages = tableau.stages(),
+                  .is_explicit = false,
+                  .is_symplectic = schemes::is_symplectic(exact),
+                  .is_symmetric = schemes::is_symmetric(exact),
+                  .needs_second_order = true,
+                  .formula =
+                      "k_i = M^-1 f(t + c_i h, x + c_i h v + h² sum_j A_ij k_j, v + h sum_j a_ij k_j);  "
+                      "x' = x + h v + h² sum_i B_i k_i;  v' = v + h sum_i b_i k_i",
+                  .reference = tableau.reference};
+  return std::make_unique<FixedStepIntegrator>(
+      std::move(info),
+      [=](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
+        return std::make_unique<SecondOrderStepper>(coupled, options, ivp, work);
+      },
+      [exact](const Ivp& ivp, std::uint64_t steps) {
+        return run_extended_steps(ivp, steps,
+                                  [&](const Float128& t, const Float128& h, std::vector<Float128>& y) {
+                                    extended_nystrom_step(exact, *ivp.system, t, h, y);
+                                  });
+      });
 }
 
 }  // namespace fw::integrators

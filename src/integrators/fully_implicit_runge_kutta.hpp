@@ -5,6 +5,7 @@
 #include "integrators/stage_solver.hpp"
 #include "ode/integrator.hpp"
 #include "schemes/butcher_tableau.hpp"
+#include "schemes/nystrom_tableau.hpp"
 
 namespace fw::integrators {
 
@@ -21,5 +22,11 @@ namespace fw::integrators {
 /// Constant steps. Has a binary128 version, which uses the same iteration with residuals in binary128.
 std::unique_ptr<Integrator> make_fully_implicit_runge_kutta(const schemes::ButcherTableau& tableau,
                                                             const ImplicitOptions& options = {});
+
+/// A Nyström method with coupled stages, for example a partitioned Lobatto pair, in the same way: the
+/// accelerations of the stages with ā in place of A² and a in place of A. Constant steps, with a binary128
+/// version (fixed-point iteration).
+std::unique_ptr<Integrator> make_implicit_nystrom(const schemes::NystromTableau& tableau,
+                                                  const ImplicitOptions& options = {});
 
 }  // namespace fw::integrators

@@ -90,11 +90,29 @@ NystromTableau dormand_prince_rkn_86() {
           .reference = "[Dormand, El-Mikkawy, Prince 1987]"};
 }
 
+/// Positions by Lobatto IIIA with the matrix A, velocities by Lobatto IIIB with Â, 3 stages: ā = A Â, a = Â,
+/// b̄ = bᵀÂ. The pair with 2 stages is velocity Verlet.
+NystromTableau lobatto_iiia_iiib3() {
+  return {.name = "lobatto_iiia_iiib3",
+          .title = "Lobatto IIIA-IIIB pair with 3 stages",
+          .c = {0, "1/2", 1},
+          .A_position = {{}, {"1/12", "1/24"}, {"1/6", "1/3"}},
+          .A_velocity = {{"1/6", "-1/6"}, {"1/6", "1/3"}, {"1/6", "5/6"}},
+          .b_position = {"1/6", "1/3", 0},
+          .b_velocity = {"1/6", "2/3", "1/6"},
+          .reference = "[Sun 1993; Jay 1996; Hairer, Lubich, Wanner 2006, II.2, VI.4]"};
+}
+
 }  // namespace
 
 const std::vector<NystromTableau>& nystrom_tableaus() {
   static const std::vector<NystromTableau> list{nystrom4(), nystrom4_general(), nystrom5(),
                                                 dormand_prince_rkn_64(), dormand_prince_rkn_86()};
+  return list;
+}
+
+const std::vector<NystromTableau>& implicit_nystrom_tableaus() {
+  static const std::vector<NystromTableau> list{lobatto_iiia_iiib3()};
   return list;
 }
 
