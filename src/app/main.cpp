@@ -3,7 +3,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "app/commands.hpp"
 #include "core/closest_name.hpp"
@@ -80,7 +82,16 @@ int run(int argc, char** argv) {
     report(fmt::format("{}; \"{} --help\" shows the usage", error.what(), chosen_command(app)));
     return fw::app::exit_bad_input;
   }
-  const int code = action();
+  int code = fw::app::exit_success;
+  try {
+    code = action();
+  } catch (const std::filesystem::filesystem_error&) {
+    throw;  // names its file
+  } catch (const std::system_error&
+               error) {  // a table that does not fit the buffer is written, and fails, at once
+    throw fw::SystemError(
+        fmt::format("cannot write to standard output: {}", std::strerror(error.code().value())));
+  }
   // What is buffered fails only here, and a table that was cut off must not pass for a whole one.
   if (std::fflush(stdout) != 0) {
     throw fw::SystemError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));

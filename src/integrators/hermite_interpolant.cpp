@@ -23,8 +23,8 @@ void HermiteInterpolant::operator()(double t, VectorRef out) {
   const double h = end_time_ - start_time_;
   const double s = (t - start_time_) / h;
   const double r = 1.0 - s;
-  out = (r * r * (1.0 + 2.0 * s)) * start + (s * s * (1.0 + 2.0 * r)) * end + (h * s * r * r) * start_slope_ -
-        (h * s * s * r) * end_slope_;
+  // In differences: a component that rests at both ends rests in between, to the last bit.
+  out = start + (s * s * (1.0 + 2.0 * r)) * (end - start) + (h * s * r) * (r * start_slope_ - s * end_slope_);
 }
 
 }  // namespace fw::integrators

@@ -302,7 +302,7 @@ OscillatorStability oscillator_stability(const NystromValues<Float128>& tableau)
       (is_stable(middle) ? good : bad) = middle;
     }
     // Where growth begins at once, bisection ends at the resolution of the test.
-    constexpr double resolution = 1e-3;
+    constexpr double resolution = 1e-2;
     result.interval = good < resolution ? 0.0 : good;
   }
   result.dissipation_order = vanishing_order([&](double z) { return 1.0 - matrix.at(z).determinant; });

@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <unistd.h>
 #include <filesystem>
+#include <map>
 
 #include "app/process.hpp"
 #include "app/result_text.hpp"
@@ -132,8 +133,18 @@ TEST_F(Simulate, WritesXdmfOnRequest) {
   EXPECT_THAT(store::test::read_bytes(scratch_ / "a.xdmf"), HasSubstr("a.h5:"));
 }
 
-TEST_F(Simulate, GivesTheSameResultBitForBitWhenRunTwice) {
+/// The first two methods of each family that run with dampers: every engine is among them.
+std::vector<catalog::MethodEntry> two_of_each_family() {
+  std::map<std::string, int> taken;
+  std::vector<catalog::MethodEntry> list;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
+    if (!entry.info.needs_position_forces && ++taken[entry.info.family] <= 2) list.push_back(entry);
+  }
+  return list;
+}
+
+TEST_F(Simulate, GivesTheSameResultBitForBitWhenRunTwice) {
+  for (const catalog::MethodEntry& entry : two_of_each_family()) {
     Words arguments = {"--method", entry.info.name, "--t-end", "0.5"};
     if (entry.info.is_adaptive) {
       arguments.insert(arguments.end(), {"--rtol", "1e-6", "--atol", "1e-8"});
@@ -157,7 +168,7 @@ TEST_F(Simulate, AnotherStepIsNotTheSameResult) {
 }
 
 TEST_F(Simulate, LeavesFixedPointsWhereTheyAreBitForBit) {
-  for (const catalog::MethodEntry& entry : catalog::methods()) {
+  for (const catalog::MethodEntry& entry : two_of_each_family()) {
     Words arguments = {"--method", entry.info.name, "--t-end", "1"};
     if (entry.info.is_adaptive) {
       arguments.insert(arguments.end(), {"--rtol", "1e-4", "--atol", "1e-6"});
