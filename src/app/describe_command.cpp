@@ -21,7 +21,7 @@ namespace {
 using store::JsonWriter;
 
 std::string describe_method(const catalog::MethodEntry& entry) {
-  const MethodInfo& info = entry.info;
+  const MethodInfo& info = entry.info();
   std::string text = fmt::format("{}\n{}\n\n", info.name, info.title);
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<24} {}\n", label, value);
@@ -112,7 +112,7 @@ void write_tableau(JsonWriter& json, const schemes::SchemeData& data) {
 }
 
 std::string method_json(const catalog::MethodEntry& entry) {
-  const MethodInfo& info = entry.info;
+  const MethodInfo& info = entry.info();
   JsonWriter json;
   json.begin_object();
   json.key("type").value("method").key("name").value(info.name).key("title").value(info.title);
@@ -171,8 +171,8 @@ std::string entry_text(const char* type, const std::string& name, const std::str
 std::string describe(const std::string& name, bool as_json) {
   std::vector<std::string> names;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (entry.info.name == name) return as_json ? method_json(entry) : describe_method(entry);
-    names.push_back(entry.info.name);
+    if (entry.name == name) return as_json ? method_json(entry) : describe_method(entry);
+    names.push_back(entry.name);
   }
   for (const ProblemEntry& entry : catalog::problems()) {
     if (entry.name == name) return as_json ? problem_json(entry) : describe_problem(entry);

@@ -37,7 +37,7 @@ std::string methods_json(bool only_oracles) {
   JsonWriter json;
   json.begin_array();
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    const MethodInfo& info = entry.info;
+    const MethodInfo& info = entry.info();
     if (only_oracles && info.family != oracle_family) continue;
     json.begin_object();
     json.key("name").value(info.name).key("title").value(info.title).key("family").value(info.family);
@@ -58,7 +58,7 @@ std::string methods_json(bool only_oracles) {
 std::string methods_table(bool only_oracles) {
   std::vector<std::string> name, order, stages, kind, steps, symplectic, stable, title;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    const MethodInfo& info = entry.info;
+    const MethodInfo& info = entry.info();
     if (only_oracles && info.family != oracle_family) continue;
     name.push_back(info.name);
     order.push_back(order_text(info));

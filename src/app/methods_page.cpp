@@ -69,7 +69,7 @@ std::string properties_cell(const MethodInfo& info, const schemes::DerivedProper
 }
 
 std::string row(const catalog::MethodEntry& entry) {
-  const MethodInfo& info = entry.info;
+  const MethodInfo& info = entry.info();
   const schemes::DerivedProperties derived = schemes::derive(entry.data);
   return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, cell(info.title),
                      order_cell(info), info.stages, stability_cell(info, derived),
@@ -81,8 +81,8 @@ std::string row(const catalog::MethodEntry& entry) {
 std::string methods_page() {
   std::vector<std::string> families;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (std::find(families.begin(), families.end(), entry.info.family) == families.end()) {
-      families.push_back(entry.info.family);
+    if (std::find(families.begin(), families.end(), entry.info().family) == families.end()) {
+      families.push_back(entry.info().family);
     }
   }
   std::string page;
@@ -93,11 +93,11 @@ std::string methods_page() {
     std::string rows, formulas;
     std::vector<std::string> different;
     for (const catalog::MethodEntry& entry : catalog::methods()) {
-      if (entry.info.family != family) continue;
+      if (entry.info().family != family) continue;
       rows += row(entry);
-      formulas += fmt::format("- `{}`: `{}`\n", entry.info.name, entry.info.formula);
-      if (std::find(different.begin(), different.end(), entry.info.formula) == different.end()) {
-        different.push_back(entry.info.formula);
+      formulas += fmt::format("- `{}`: `{}`\n", entry.name, entry.info().formula);
+      if (std::find(different.begin(), different.end(), entry.info().formula) == different.end()) {
+        different.push_back(entry.info().formula);
       }
     }
     if (different.size() == 1) page += fmt::format("\n    {}\n", different.front());

@@ -131,7 +131,7 @@ int verify(const VerifyArguments& arguments) {
   std::vector<std::string> calls = arguments.methods;
   if (calls.empty()) {
     for (const catalog::MethodEntry& entry : catalog::methods()) {
-      if (entry.info.has_fixed_step) calls.push_back(entry.info.name);
+      if (entry.info().has_fixed_step) calls.push_back(entry.name);
     }
   }
   for (const std::string& call : calls)

@@ -44,7 +44,7 @@ namespace {
 
 /// A method without options.
 MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
-  return {make()->info(), {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+  return {make()->info().name, {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
 }
 
 /// The value of an option out of a list of names.
@@ -107,20 +107,31 @@ integrators::ControllerOptions read_controller(const MethodOptions& options) {
   return chosen;
 }
 
+bool has_embedded_solution(const schemes::ButcherTableau& tableau) {
+  return !tableau.b_embedded.empty();
+}
+bool has_embedded_solution(const schemes::RosenbrockTableau& tableau) {
+  return !tableau.b_embedded.empty();
+}
+bool has_embedded_solution(const schemes::NystromTableau& tableau) {
+  return !tableau.b_velocity_embedded.empty();
+}
+bool has_embedded_solution(const schemes::AdditiveTableau& tableau) {
+  return !tableau.explicit_part.b_embedded.empty();
+}
+
 /// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the
 /// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
-  MethodInfo info = make(data, integrators::ControllerOptions{})->info();
-  const bool adaptive = info.is_adaptive;
-  return {std::move(info), adaptive ? controller_options : std::vector<OptionInfo>{}, data,
+  return {data.name, has_embedded_solution(data) ? controller_options : std::vector<OptionInfo>{}, data,
           [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
 }
 
 MethodEntry linearised_implicit_euler() {
   using integrators::LinearisedOptions;
   using linalg::LinearSolverKind;
-  return {integrators::make_implicit_euler_linearised({})->info(),
+  return {integrators::make_implicit_euler_linearised({})->info().name,
           {{"linear_solver", "cg", "cg (conjugate gradients), cholesky or lu"},
            {"linear_tolerance", "1e-10", "relative residual of cg"},
            {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
@@ -144,7 +155,7 @@ MethodEntry linearised_implicit_euler() {
 
 MethodEntry runge_kutta_chebyshev(int order) {
   const integrators::RungeKuttaChebyshevOptions defaults{.order = order};
-  return {integrators::make_runge_kutta_chebyshev(defaults)->info(),
+  return {fmt::format("rkc{}", order),
           {{"stages", fmt::format("{}", defaults.stages),
             "number of stages, or auto (from the step and the spectral radius of J)"}},
           schemes::chebyshev_tableau(order, defaults.stages),
@@ -192,7 +203,7 @@ int count(const MethodOptions& options, const std::string& name, int fallback) {
 std::vector<MethodEntry> specialised_schemes() {
   using namespace integrators;
   std::vector<MethodEntry> list;
-  list.push_back({make_newmark()->info(),
+  list.push_back({make_newmark()->info().name,
                   {{"beta", "0.25", "0 (central differences) to 0.5; 0.25 is average acceleration"},
                    {"gamma", "0.5", "0.5 (order 2) to 1 (numerical damping)"}},
                   {},
@@ -200,19 +211,19 @@ std::vector<MethodEntry> specialised_schemes() {
                     return make_newmark(
                         {.beta = number(options, "beta", 0.25), .gamma = number(options, "gamma", 0.5)});
                   }});
-  list.push_back({make_hht_alpha()->info(),
+  list.push_back({make_hht_alpha()->info().name,
                   {{"alpha", "-0.1", "-1/3 to 0, as in the original paper; 0: no numerical damping"}},
                   {},
                   [](const MethodOptions& options) {
                     return make_hht_alpha({.alpha = number(options, "alpha", -0.1)});
                   }});
-  list.push_back({make_generalised_alpha()->info(),
+  list.push_back({make_generalised_alpha()->info().name,
                   {{"rho_infinity", "0.8", "spectral radius at infinite frequency, 0 to 1"}},
                   {},
                   [](const MethodOptions& options) {
                     return make_generalised_alpha({.rho_infinity = number(options, "rho_infinity", 0.8)});
                   }});
-  list.push_back({make_average_vector_field()->info(),
+  list.push_back({make_average_vector_field()->info().name,
                   {{"quadrature_points", "4", "Gauss points, 1 to 8"}},
                   {},
                   [](const MethodOptions& options) {
@@ -220,7 +231,7 @@ std::vector<MethodEntry> specialised_schemes() {
                         {.quadrature_points = count(options, "quadrature_points", 4)});
                   }});
   list.push_back(plain(make_discrete_gradient));
-  list.push_back({make_exponential_rosenbrock_euler()->info(),
+  list.push_back({make_exponential_rosenbrock_euler()->info().name,
                   {{"krylov_tolerance", "1e-12", "of a phi function, relative to the state"},
                    {"krylov_dimension", "200", "largest dimension of the Krylov space"}},
                   {},
@@ -229,7 +240,7 @@ std::vector<MethodEntry> specialised_schemes() {
                         {.krylov_tolerance = number(options, "krylov_tolerance", 1e-12),
                          .krylov_dimension = count(options, "krylov_dimension", 200)});
                   }});
-  list.push_back({make_gautschi()->info(),
+  list.push_back({make_gautschi()->info().name,
                   {{"filter", "gautschi", "gautschi, deuflhard or mollified_impulse"}},
                   {},
                   [](const MethodOptions& options) {
@@ -240,19 +251,19 @@ std::vector<MethodEntry> specialised_schemes() {
                               {"deuflhard", TrigonometricFilter::deuflhard},
                               {"mollified_impulse", TrigonometricFilter::mollified_impulse}})});
                   }});
-  list.push_back({make_r_respa()->info(),
+  list.push_back({make_r_respa()->info().name,
                   {{"inner_steps", "10", "steps of the stiff forces per step"}},
                   {},
                   [](const MethodOptions& options) {
                     return make_r_respa({.inner_steps = count(options, "inner_steps", 10)});
                   }});
-  list.push_back({make_projective_dynamics()->info(),
+  list.push_back({make_projective_dynamics()->info().name,
                   {{"iterations", "10", "local-global iterations per step"}},
                   {},
                   [](const MethodOptions& options) {
                     return make_projective_dynamics({.iterations = count(options, "iterations", 10)});
                   }});
-  list.push_back({make_xpbd()->info(),
+  list.push_back({make_xpbd()->info().name,
                   {{"substeps", "10", "substeps per step"}, {"iterations", "1", "sweeps per substep"}},
                   {},
                   [](const MethodOptions& options) {
@@ -264,7 +275,7 @@ std::vector<MethodEntry> specialised_schemes() {
 
 MethodEntry cvode_bdf() {
   const oracles::CvodeOptions defaults;
-  return {oracles::make_cvode_bdf()->info(),
+  return {oracles::make_cvode_bdf()->info().name,
           {{"tolerance_factor", fmt::format("{}", defaults.tolerance_factor),
             "CVODE's own tolerances as a fraction of those given"}},
           {},
@@ -283,7 +294,7 @@ std::vector<MethodEntry> make_list() {
     list.push_back(with_controller(tableau, integrators::make_nystrom));
   }
   for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
-    list.push_back({integrators::make_splitting(scheme)->info(), {}, scheme, [&scheme](const MethodOptions&) {
+    list.push_back({scheme.name, {}, scheme, [&scheme](const MethodOptions&) {
                       return integrators::make_splitting(scheme);
                     }});
   }
@@ -298,17 +309,14 @@ std::vector<MethodEntry> make_list() {
         }));
   }
   for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
-    list.push_back(
-        {integrators::make_fully_implicit_runge_kutta(tableau)->info(),
-         {},
-         tableau,
-         [&tableau](const MethodOptions&) { return integrators::make_fully_implicit_runge_kutta(tableau); }});
+    list.push_back({tableau.name, {}, tableau, [&tableau](const MethodOptions&) {
+                      return integrators::make_fully_implicit_runge_kutta(tableau);
+                    }});
   }
   for (const schemes::NystromTableau& tableau : schemes::implicit_nystrom_tableaus()) {
-    list.push_back(
-        {integrators::make_implicit_nystrom(tableau)->info(), {}, tableau, [&tableau](const MethodOptions&) {
-           return integrators::make_implicit_nystrom(tableau);
-         }});
+    list.push_back({tableau.name, {}, tableau, [&tableau](const MethodOptions&) {
+                      return integrators::make_implicit_nystrom(tableau);
+                    }});
   }
   for (const schemes::RosenbrockTableau& tableau : schemes::rosenbrock_tableaus()) {
     list.push_back(with_controller(tableau, integrators::make_rosenbrock));
@@ -321,10 +329,9 @@ std::vector<MethodEntry> make_list() {
   }
   list.push_back(linearised_implicit_euler());
   for (const schemes::MultistepFormula& formula : schemes::multistep_formulas()) {
-    list.push_back(
-        {integrators::make_linear_multistep(formula)->info(), {}, formula, [&formula](const MethodOptions&) {
-           return integrators::make_linear_multistep(formula);
-         }});
+    list.push_back({formula.name, {}, formula, [&formula](const MethodOptions&) {
+                      return integrators::make_linear_multistep(formula);
+                    }});
   }
   for (MethodEntry& entry : specialised_schemes()) list.push_back(std::move(entry));
   list.push_back(cvode_bdf());
@@ -341,8 +348,8 @@ const std::vector<MethodEntry>& methods() {
 const MethodEntry& find_method(const std::string& name) {
   std::vector<std::string> names;
   for (const MethodEntry& entry : methods()) {
-    if (entry.info.name == name) return entry;
-    names.push_back(entry.info.name);
+    if (entry.name == name) return entry;
+    names.push_back(entry.name);
   }
   throw InputError(fmt::format("unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
                                did_you_mean(name, names)));

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <vector>
 
 #include "catalog/method_call.hpp"
@@ -11,12 +13,37 @@
 namespace fw::catalog {
 
 /// One line of the list of methods.
-struct MethodEntry {
-  MethodInfo info;
+class MethodEntry {
+ public:
+  using Make = std::function<std::unique_ptr<Integrator>(const MethodOptions&)>;
+
+  MethodEntry(std::string method_name, std::vector<OptionInfo> method_options,
+              schemes::SchemeData scheme_data, Make make_method)
+      : name(std::move(method_name)),
+        options(std::move(method_options)),
+        data(std::move(scheme_data)),
+        make(std::move(make_method)),
+        lazy_(std::make_shared<Lazy>()) {}
+
+  /// What is known of the method with its default options. Derived when it is first asked for, since the
+  /// order conditions of a hundred schemes would delay every start of the program.
+  const MethodInfo& info() const {
+    std::call_once(lazy_->once, [&] { lazy_->info = make({})->info(); });
+    return lazy_->info;
+  }
+
+  std::string name;
   std::vector<OptionInfo> options;
   schemes::SchemeData data;  ///< the coefficients that define it, if it is defined so
   /// Makes the integrator. Throws InputError for a bad option value; unknown options are checked before.
-  std::function<std::unique_ptr<Integrator>(const MethodOptions&)> make;
+  Make make;
+
+ private:
+  struct Lazy {
+    std::once_flag once;
+    MethodInfo info;
+  };
+  std::shared_ptr<Lazy> lazy_;
 };
 
 /// Every method, hand-written ones first, then the oracles. The only place where one is registered.

@@ -138,21 +138,21 @@ std::vector<catalog::MethodEntry> two_of_each_family() {
   std::map<std::string, int> taken;
   std::vector<catalog::MethodEntry> list;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (!entry.info.needs_position_forces && ++taken[entry.info.family] <= 2) list.push_back(entry);
+    if (!entry.info().needs_position_forces && ++taken[entry.info().family] <= 2) list.push_back(entry);
   }
   return list;
 }
 
 TEST_F(Simulate, GivesTheSameResultBitForBitWhenRunTwice) {
   for (const catalog::MethodEntry& entry : two_of_each_family()) {
-    Words arguments = {"--method", entry.info.name, "--t-end", "0.5"};
-    if (entry.info.is_adaptive) {
+    Words arguments = {"--method", entry.name, "--t-end", "0.5"};
+    if (entry.info().is_adaptive) {
       arguments.insert(arguments.end(), {"--rtol", "1e-6", "--atol", "1e-8"});
     } else {
       arguments.insert(arguments.end(), {"--step", "0.005"});
     }
-    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.info.name;
-    ASSERT_EQ(simulate("b.h5", arguments).exit_code, 0) << entry.info.name;
+    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.name;
+    ASSERT_EQ(simulate("b.h5", arguments).exit_code, 0) << entry.name;
     inspect("assert same(f, g) > 15\n", {file("a.h5"), file("b.h5")});
   }
 }
@@ -169,13 +169,13 @@ TEST_F(Simulate, AnotherStepIsNotTheSameResult) {
 
 TEST_F(Simulate, LeavesFixedPointsWhereTheyAreBitForBit) {
   for (const catalog::MethodEntry& entry : two_of_each_family()) {
-    Words arguments = {"--method", entry.info.name, "--t-end", "1"};
-    if (entry.info.is_adaptive) {
+    Words arguments = {"--method", entry.name, "--t-end", "1"};
+    if (entry.info().is_adaptive) {
       arguments.insert(arguments.end(), {"--rtol", "1e-4", "--atol", "1e-6"});
     } else {
       arguments.insert(arguments.end(), {"--step", "0.005"});
     }
-    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.info.name;
+    ASSERT_EQ(simulate("a.h5", arguments).exit_code, 0) << entry.name;
     inspect(R"(
 x, v = f['trajectory/position'][()], f['trajectory/velocity'][()]
 assert list(f['system/fixed']) == [0]

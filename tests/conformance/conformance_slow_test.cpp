@@ -14,8 +14,7 @@ namespace {
 std::vector<std::string> own_schemes() {
   std::vector<std::string> names;
   for (const MethodEntry& entry : methods()) {
-    if (entry.info.has_fixed_step && entry.info.name.find(':') == std::string::npos)
-      names.push_back(entry.info.name);
+    if (entry.info().has_fixed_step && entry.name.find(':') == std::string::npos) names.push_back(entry.name);
   }
   return names;
 }
