@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "catalog/methods.hpp"
@@ -90,22 +91,29 @@ std::string methods_page() {
     page +=
         fmt::format("\n### {}{}\n", static_cast<char>(std::toupper(static_cast<unsigned char>(family[0]))),
                     family.substr(1));
-    std::string rows, formulas;
-    std::vector<std::string> different;
+    std::string rows;
+    std::vector<std::pair<std::string, std::string>> formulas;  // names of all schemes with this formula
     for (const catalog::MethodEntry& entry : catalog::methods()) {
-      if (entry.info().family != family) continue;
+      const MethodInfo& info = entry.info();
+      if (info.family != family) continue;
       rows += row(entry);
-      formulas += fmt::format("- `{}`: `{}`\n", entry.name, entry.info().formula);
-      if (std::find(different.begin(), different.end(), entry.info().formula) == different.end()) {
-        different.push_back(entry.info().formula);
+      const auto known = std::find_if(formulas.begin(), formulas.end(),
+                                      [&](const auto& pair) { return pair.second == info.formula; });
+      if (known == formulas.end()) {
+        formulas.emplace_back(fmt::format("`{}`", entry.name), info.formula);
+      } else {
+        known->first += fmt::format(", `{}`", entry.name);
       }
     }
-    if (different.size() == 1) page += fmt::format("\n    {}\n", different.front());
+    if (formulas.size() == 1) page += fmt::format("\n    {}\n", formulas.front().second);
     page +=
         "\n| name | scheme | order | evaluations | stability | properties | literature "
         "|\n|---|---|---|---|---|---|---|\n";
     page += rows;
-    if (different.size() > 1) page += "\nOne step:\n" + formulas;
+    if (formulas.size() > 1) {
+      page += "\nOne step:\n";
+      for (const auto& [names, formula] : formulas) page += fmt::format("- {}: `{}`\n", names, formula);
+    }
   }
   return page;
 }

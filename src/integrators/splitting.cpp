@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "integrators/implicit_kick.hpp"
@@ -175,11 +176,13 @@ std::vector<Float128> solve_extended(const SplittingValues<Float128>& scheme, co
   return y;
 }
 
-/// One step in formula: its coefficients where there are few, else its pattern.
+/// One step in formula: its coefficients where these are few and short, else its pattern.
 std::string formula(const schemes::SplittingScheme& scheme) {
   std::string text;
-  constexpr std::size_t most_kicks = 3;
-  if (scheme.kick.size() > most_kicks) {
+  constexpr std::size_t most_kicks = 3, longest = 7;
+  const auto is_long = [](const schemes::Coefficient& c) { return c.text().size() > longest; };
+  if (scheme.kick.size() > most_kicks || std::any_of(scheme.drift.begin(), scheme.drift.end(), is_long) ||
+      std::any_of(scheme.kick.begin(), scheme.kick.end(), is_long)) {
     return "x += a_i h v, v += b_i h M^-1 f(t_i, x, v + alpha_i h M^-1 f) for i = 1...s, x += a_{s+1} h v";
   }
   const auto add = [&](const std::string& move) { text += (text.empty() ? "" : ";  ") + move; };
