@@ -34,10 +34,15 @@ Levels first_order_levels(const Integrator& scheme) {
   return order == 5 ? Levels{150, std::pow(2.0, 0.2)} : Levels{70, std::pow(2.0, 0.25)};
 }
 
+/// Order 6 has its asymptotic range within two decades of rounding: the conformance suite measures it in
+/// binary128.
+constexpr int highest_order_in_double = 5;
+
 TEST(LinearMultistep, ConvergesWithTheOrderOfItsFormulaOnMechanicalSystems) {
   for (const auto& formula : schemes::multistep_formulas()) {
     const auto scheme = make_linear_multistep(formula);
     EXPECT_EQ(scheme->info().order, formula.name.back() - '0');
+    if (scheme->info().order > highest_order_in_double) continue;
     const Levels levels = mechanical_levels(*scheme);
     expect_claimed_orders(*scheme, levels.coarsest, 8, levels.refinement);
   }
@@ -48,6 +53,7 @@ TEST(LinearMultistep, ConvergesWithTheOrderOfItsFormulaOnFirstOrderSystems) {
   const Vector reference = certified_end(ivp);
   for (const auto& formula : schemes::multistep_formulas()) {
     const auto scheme = make_linear_multistep(formula);
+    if (scheme->info().order > highest_order_in_double) continue;
     const Levels levels = first_order_levels(*scheme);
     expect_order(*scheme, ivp, reference, scheme->info().order, levels.coarsest, 8, "first order",
                  levels.refinement);

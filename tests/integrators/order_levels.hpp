@@ -106,9 +106,6 @@ inline ObservedOrders observed_orders(const Integrator& scheme, const Ivp& ivp, 
 inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector& reference, double order,
                          int coarsest, int levels, const std::string& what,
                          double refinement = std::numbers::sqrt2, double window = 0.1) {
-  // In double, order 6 has its asymptotic range within two decades of rounding: a wider window, still
-  // two-sided.
-  if (order >= 6.0) window = std::max(window, 0.15);
   const ObservedOrders observed = observed_orders(scheme, ivp, reference, coarsest, levels, refinement);
   for (const auto& [fit, half] :
        {std::pair{observed.position, "positions"}, std::pair{observed.velocity, "velocities"}}) {
