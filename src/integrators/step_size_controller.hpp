@@ -11,7 +11,7 @@ namespace fw::integrators {
 enum class ControllerKind {
   integral,                          ///< I: β = (1, 0, 0)
   proportional_integral,             ///< PI: β = (0.7, −0.4, 0)
-  proportional_integral_derivative,  ///< PID, the digital filter H211/H312 type with β = (1/4, 1/2, 1/4)
+  proportional_integral_derivative,  ///< PID: the filter H312 of Söderlind, β = (1/4, 1/2, 1/4)
 };
 
 /// How the error vector becomes one number, with the scale sc_i = atol + rtol·max(|y_i|, |y'_i|).
