@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "catalog/method_options.hpp"
+#include "catalog/oracle_methods.hpp"
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "integrators/additive_runge_kutta.hpp"
@@ -28,7 +29,6 @@
 #include "integrators/splitting.hpp"
 #include "integrators/verlet.hpp"
 #include "integrators/xpbd.hpp"
-#include "oracles/sundials/cvode.hpp"
 #include "schemes/additive_tableaus.hpp"
 #include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/explicit_tableaus.hpp"
@@ -41,51 +41,6 @@
 namespace fw::catalog {
 
 namespace {
-
-/// A method without options.
-MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
-  return {make()->info().name, {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
-}
-
-/// The value of an option out of a list of names.
-template <class Value>
-Value choose(const MethodOptions& options, const std::string& name, Value fallback,
-             const std::vector<std::pair<std::string, Value>>& values) {
-  const auto option = options.find(name);
-  if (option == options.end()) return fallback;
-  std::vector<std::string> names;
-  for (const auto& [text, value] : values) {
-    if (text == option->second) return value;
-    names.push_back(text);
-  }
-  throw InputError(fmt::format("option {}: found \"{}\", expected one of {}", name, option->second,
-                               fmt::join(names, ", ")));
-}
-
-double positive_number(const MethodOptions& options, const std::string& name, double fallback) {
-  const auto option = options.find(name);
-  if (option == options.end()) return fallback;
-  double value = 0.0;
-  const char* end = option->second.data() + option->second.size();
-  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
-  if (error != std::errc() || stop != end || !(value > 0.0) || value > 1.0) {
-    throw InputError(
-        fmt::format("option {}: found \"{}\", expected a number in (0, 1]", name, option->second));
-  }
-  return value;
-}
-
-int whole_number(const std::string& name, const std::string& text, int least, int most,
-                 const std::string& alternative = "") {
-  int value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || value < least || value > most) {
-    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number from {} to {}{}", name,
-                                 text, least, most, alternative));
-  }
-  return value;
-}
 
 /// Options of a scheme that can choose its own steps.
 const std::vector<OptionInfo> controller_options = {
@@ -130,19 +85,18 @@ MethodEntry with_controller(const Data& data, Make make) {
 
 MethodEntry linearised_implicit_euler() {
   using integrators::LinearisedOptions;
-  using linalg::LinearSolverKind;
   return {integrators::make_implicit_euler_linearised({})->info().name,
-          {{"linear_solver", "cg", "cg (conjugate gradients), cholesky or lu"},
-           {"linear_tolerance", "1e-10", "relative residual of cg"},
+          {{"linear_solver", "cg", linalg::linear_solver_names()},
+           {"linear_tolerance", "1e-10", "relative residual of iterative solvers"},
+           {"petsc", "", "options of the linear solver petsc, such as -ksp_type cg -pc_type gamg"},
            {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
           {},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
-            chosen.linear_solver.kind =
-                choose<LinearSolverKind>(options, "linear_solver", LinearSolverKind::conjugate_gradient,
-                                         {{"cg", LinearSolverKind::conjugate_gradient},
-                                          {"cholesky", LinearSolverKind::sparse_cholesky},
-                                          {"lu", LinearSolverKind::sparse_lu}});
+            const auto name = options.find("linear_solver");
+            if (name != options.end())
+              chosen.linear_solver.kind = linalg::find_linear_solver(name->second).kind;
+            chosen.linear_solver.petsc_options = text(options, "petsc");
             chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
             chosen.tangent =
                 choose<TangentModel>(options, "tangent", TangentModel::exact,
@@ -171,32 +125,6 @@ MethodEntry runge_kutta_chebyshev(int order) {
             }
             return integrators::make_runge_kutta_chebyshev(chosen);
           }};
-}
-
-/// A number whose range the method itself checks.
-double number(const MethodOptions& options, const std::string& name, double fallback) {
-  const auto option = options.find(name);
-  if (option == options.end()) return fallback;
-  double value = 0.0;
-  const char* end = option->second.data() + option->second.size();
-  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
-  if (error != std::errc() || stop != end) {
-    throw InputError(fmt::format("option {}: found \"{}\", expected a number", name, option->second));
-  }
-  return value;
-}
-
-/// A count whose range the method itself checks.
-int count(const MethodOptions& options, const std::string& name, int fallback) {
-  const auto option = options.find(name);
-  if (option == options.end()) return fallback;
-  int value = 0;
-  const char* end = option->second.data() + option->second.size();
-  const auto [stop, error] = std::from_chars(option->second.data(), end, value);
-  if (error != std::errc() || stop != end) {
-    throw InputError(fmt::format("option {}: found \"{}\", expected a whole number", name, option->second));
-  }
-  return value;
 }
 
 /// Structural dynamics, energy–momentum, exponential, graphics and multirate schemes.
@@ -273,18 +201,6 @@ std::vector<MethodEntry> specialised_schemes() {
   return list;
 }
 
-MethodEntry cvode_bdf() {
-  const oracles::CvodeOptions defaults;
-  return {oracles::make_cvode_bdf()->info().name,
-          {{"tolerance_factor", fmt::format("{}", defaults.tolerance_factor),
-            "CVODE's own tolerances as a fraction of those given"}},
-          {},
-          [defaults](const MethodOptions& options) {
-            return oracles::make_cvode_bdf({.tolerance_factor = positive_number(options, "tolerance_factor",
-                                                                                defaults.tolerance_factor)});
-          }};
-}
-
 std::vector<MethodEntry> make_list() {
   std::vector<MethodEntry> list;
   for (const schemes::ButcherTableau& tableau : schemes::explicit_tableaus()) {
@@ -334,7 +250,9 @@ std::vector<MethodEntry> make_list() {
                     }});
   }
   for (MethodEntry& entry : specialised_schemes()) list.push_back(std::move(entry));
-  list.push_back(cvode_bdf());
+  for (auto* oracle_methods : {sundials_methods, petsc_methods, gsl_methods}) {
+    for (MethodEntry& entry : oracle_methods()) list.push_back(std::move(entry));
+  }
   return list;
 }
 

@@ -46,6 +46,11 @@ class MethodEntry {
   std::shared_ptr<Lazy> lazy_;
 };
 
+/// A method without options.
+inline MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
+  return {make()->info().name, {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+}
+
 /// Every method, hand-written ones first, then the oracles. The only place where one is registered.
 const std::vector<MethodEntry>& methods();
 

@@ -7,13 +7,22 @@ namespace fw::integrators {
 
 namespace {
 
+/// Springs live in space: their positions tell a multigrid solver the rigid body modes.
+linalg::LinearSolverOptions with_coordinates(linalg::LinearSolverOptions options, const Ivp& ivp) {
+  const SecondOrderSystem& system = *ivp.system->second_order();
+  if (system.has_springs()) options.coordinates = ivp.y0.head(system.degrees_of_freedom());
+  return options;
+}
+
 class LinearisedStepper final : public Stepper {
  public:
   LinearisedStepper(const LinearisedOptions& options, const Ivp& ivp, Work& work)
       : options_(options),
         system_(*ivp.system->second_order()),
         work_(work),
-        solver_(linalg::make_linear_solver(options.linear_solver)),
+        needs_symmetry_(linalg::find_linear_solver(options.linear_solver.kind).needs_symmetric ||
+                        options.linear_solver.kind == linalg::LinearSolverKind::petsc),
+        solver_(linalg::make_linear_solver(with_coordinates(options.linear_solver, ivp))),
         matrix_(system_),
         right_hand_side_(system_.degrees_of_freedom()),
         product_(system_.degrees_of_freedom()),
@@ -24,9 +33,8 @@ class LinearisedStepper final : public Stepper {
     const Index n = increment_.size();
     auto x = y.head(n);
     auto v = y.tail(n);
-    const bool needs_symmetry = options_.linear_solver.kind != linalg::LinearSolverKind::sparse_lu;
-    const SparseMatrix& A = needs_symmetry ? matrix_.assemble_symmetric(t + h, x, v, h, options_.tangent)
-                                           : matrix_.assemble(t + h, x, v, h, options_.tangent);
+    const SparseMatrix& A = needs_symmetry_ ? matrix_.assemble_symmetric(t + h, x, v, h, options_.tangent)
+                                            : matrix_.assemble(t + h, x, v, h, options_.tangent);
     ++work_.jacobian_evaluations;
     if (Status status = solver_->factorise(A, work_); !status.ok()) return advise(std::move(status));
 
@@ -56,6 +64,7 @@ class LinearisedStepper final : public Stepper {
   LinearisedOptions options_;
   const SecondOrderSystem& system_;
   Work& work_;
+  bool needs_symmetry_;
   std::unique_ptr<linalg::LinearSolver> solver_;
   StepMatrix matrix_;
   Vector right_hand_side_, product_, increment_, zero_;
@@ -75,7 +84,7 @@ std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptio
       .is_a_stable = true,
       .is_l_stable = true,
       .needs_second_order = true,
-      .iteration_tolerance = options.linear_solver.kind == linalg::LinearSolverKind::conjugate_gradient
+      .iteration_tolerance = linalg::find_linear_solver(options.linear_solver.kind).is_iterative
                                  ? options.linear_solver.relative_tolerance
                                  : 0.0,
       .formula = "(M - hD - h²K) (v' - v) = h (f + h K v);  x' = x + h v';  f, K, D at (t+h, x, v)",

@@ -2,50 +2,57 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "linalg/true_residual.hpp"
 
 namespace fw::linalg {
 
 namespace {
 
-/// Fills in the true residual and judges it: a backward stable solve leaves far less than 1e-6.
-LinearSolve judge(const SparseMatrix& A, ConstVectorRef b, ConstVectorRef x, Vector& residual) {
-  LinearSolve result;
-  residual = b;
-  residual.noalias() -= A * x;
-  const double b_norm = b.norm();
-  result.relative_residual = b_norm > 0.0 ? residual.norm() / b_norm : residual.norm();
-  if (!std::isfinite(result.relative_residual)) {
-    result.status = {StatusCode::non_finite, "the solution of the linear system is not finite"};
-  } else if (result.relative_residual > 1e-6) {
-    result.status = {
-        StatusCode::linear_solver_failed,
-        fmt::format("the direct solver left a relative residual of {:.3g}", result.relative_residual)};
+/// What it means that a factorisation has failed.
+template <class Factorisation>
+struct Failure;
+template <int Triangle, class Ordering>
+struct Failure<Eigen::SimplicialLLT<SparseMatrix, Triangle, Ordering>> {
+  static Status status() {
+    return {StatusCode::matrix_indefinite, "Cholesky met a pivot <= 0: the matrix is not positive definite"};
   }
-  return result;
-}
+};
+template <int Triangle, class Ordering>
+struct Failure<Eigen::SimplicialLDLT<SparseMatrix, Triangle, Ordering>> {
+  static Status status() { return {StatusCode::matrix_singular, "LDLT met a zero pivot"}; }
+};
+template <class Ordering>
+struct Failure<Eigen::SparseLU<SparseMatrix, Ordering>> {
+  static Status status() {
+    return {StatusCode::matrix_singular, "LU met a zero pivot: the matrix is singular"};
+  }
+};
 
 }  // namespace
 
-Status SparseCholeskySolver::factorise(const SparseMatrix& A, Work& work) {
+template <class Factorisation>
+Status EigenDirectSolver<Factorisation>::factorise(const SparseMatrix& A, Work& work) {
   matrix_ = A;
+  ++work.factorisations;
+  if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   if (!analysed_) {
-    cholesky_.analyzePattern(matrix_);
+    factorisation_.analyzePattern(matrix_);
     analysed_ = true;
   }
-  cholesky_.factorize(matrix_);
-  ++work.factorisations;
-  if (cholesky_.info() != Eigen::Success) {
-    return {StatusCode::matrix_indefinite, "Cholesky met a pivot <= 0: the matrix is not positive definite"};
-  }
-  return {};
+  factorisation_.factorize(matrix_);
+  return factorisation_.info() == Eigen::Success ? Status{} : Failure<Factorisation>::status();
 }
 
-LinearSolve SparseCholeskySolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
-  x = cholesky_.solve(b);
+template <class Factorisation>
+LinearSolve EigenDirectSolver<Factorisation>::solve(ConstVectorRef b, VectorRef x, Work& work) {
+  x = factorisation_.solve(b);
   ++work.linear_solves;
-  return judge(matrix_, b, x, residual_);
+  return judge_solution(matrix_, b, x, largest_direct_residual, residual_);
 }
+
+template class EigenDirectSolver<Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
+template class EigenDirectSolver<Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
+template class EigenDirectSolver<Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>>;
 
 SparseLuSolver::SparseLuSolver() {
   klu_defaults(&common_);
@@ -63,7 +70,7 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
   int* inner = matrix_.innerIndexPtr();
   double* values = matrix_.valuePtr();
   if (!ConstVectorMap(values, matrix_.nonZeros()).allFinite()) {
-    return {StatusCode::non_finite, "the matrix of the linear system is not finite"};
+    return non_finite_matrix();
   }
   if (symbolic_ == nullptr) {
     symbolic_ = klu_analyze(static_cast<int>(matrix_.cols()), outer, inner, &common_);
@@ -93,7 +100,7 @@ LinearSolve SparseLuSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
   x = b;
   ++work.linear_solves;
   klu_solve(symbolic_, numeric_, static_cast<int>(b.size()), 1, x.data(), &common_);
-  return judge(matrix_, b, x, residual_);
+  return judge_solution(matrix_, b, x, largest_direct_residual, residual_);
 }
 
 }  // namespace fw::linalg

@@ -3,24 +3,37 @@
 #include <klu.h>
 
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 
 #include "linalg/linear_solver.hpp"
 
 namespace fw::linalg {
 
-/// LLᵀ of a symmetric positive definite matrix, of which the lower triangle is read. The pattern is analysed
-/// once; Eigen allocates work space inside each numerical factorisation.
-class SparseCholeskySolver final : public LinearSolver {
+/// One of Eigen's sparse factorisations. The pattern is analysed once; Eigen allocates work space inside each
+/// numerical factorisation.
+template <class Factorisation>
+class EigenDirectSolver final : public LinearSolver {
  public:
   Status factorise(const SparseMatrix& A, Work& work) override;
+  Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
 
  private:
-  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> cholesky_;
+  Factorisation factorisation_;
   SparseMatrix matrix_;
   Vector residual_;
   bool analysed_ = false;
 };
+
+/// LLᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
+using SparseCholeskySolver =
+    EigenDirectSolver<Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
+/// LDLᵀ of a symmetric matrix, of which the lower triangle is read. It does not pivot: an indefinite matrix
+/// can fail or lose digits, which the true residual shows.
+using SparseLdltSolver =
+    EigenDirectSolver<Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
+/// LU of any regular matrix by supernodes.
+using EigenSparseLuSolver = EigenDirectSolver<Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>>;
 
 /// P A Q = L U by KLU. The ordering is made once; later matrices are refactorised with the same pivots while
 /// these stay good (reciprocal condition estimate), and pivoted anew otherwise.
@@ -32,6 +45,7 @@ class SparseLuSolver final : public LinearSolver {
   SparseLuSolver& operator=(const SparseLuSolver&) = delete;
 
   Status factorise(const SparseMatrix& A, Work& work) override;
+  Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
 
  private:

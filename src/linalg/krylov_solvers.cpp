@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "linalg/true_residual.hpp"
+
 namespace fw::linalg {
 
 namespace {
@@ -44,6 +46,11 @@ Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
   return {};
 }
 
+Status ConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&) {
+  matrix_ = A;
+  return {};
+}
+
 void ConjugateGradientSolver::precondition(ConstVectorRef r, VectorRef out) const {
   if (block_size_ == 1) {
     out = r.cwiseProduct(ConstVectorMap(inverse_blocks_.data(), r.size()));
@@ -63,6 +70,35 @@ LinearSolve ConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& 
   LinearSolve result =
       conjugate_gradient(apply, jacobi, b, x, options_.relative_tolerance, limit, workspace_);
   ++work.linear_solves;
+  work.linear_iterations += result.iterations;
+  return result;
+}
+
+EigenConjugateGradientSolver::EigenConjugateGradientSolver(const LinearSolverOptions& options)
+    : options_(options) {
+  solver_.setTolerance(options_.relative_tolerance);
+}
+
+Status EigenConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
+  matrix_ = A;
+  ++work.factorisations;
+  if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
+  solver_.compute(matrix_);
+  return {};
+}
+
+Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work& work) {
+  return factorise(A, work);
+}
+
+LinearSolve EigenConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
+  const std::uint64_t limit =
+      options_.max_iterations > 0 ? options_.max_iterations : 10 * static_cast<std::uint64_t>(b.size());
+  solver_.setMaxIterations(static_cast<Index>(limit));
+  ++work.linear_solves;
+  x = solver_.solveWithGuess(b, x);
+  LinearSolve result = judge_solution(matrix_, b, x, 10.0 * options_.relative_tolerance, residual_);
+  result.iterations = static_cast<std::uint64_t>(solver_.iterations());
   work.linear_iterations += result.iterations;
   return result;
 }

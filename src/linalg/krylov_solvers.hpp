@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/IterativeLinearSolvers>
 #include <vector>
 
 #include "linalg/linear_solver.hpp"
@@ -14,6 +15,7 @@ class ConjugateGradientSolver final : public LinearSolver {
   explicit ConjugateGradientSolver(LinearSolverOptions options) : options_(options) {}
 
   Status factorise(const SparseMatrix& A, Work& work) override;
+  Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
 
  private:
@@ -24,6 +26,25 @@ class ConjugateGradientSolver final : public LinearSolver {
   std::vector<double> inverse_blocks_;  ///< column-major blocks, one after the other
   Index block_size_ = 1;
   ConjugateGradientWorkspace workspace_;
+};
+
+/// Eigen's conjugate gradients with its diagonal preconditioner, as a textbook would call it. Its own
+/// estimate of the residual is not believed: the true one decides.
+class EigenConjugateGradientSolver final : public LinearSolver {
+ public:
+  explicit EigenConjugateGradientSolver(const LinearSolverOptions& options);
+
+  Status factorise(const SparseMatrix& A, Work& work) override;
+  /// The same as `factorise`: Eigen makes its preconditioner together with the matrix, and a diagonal is
+  /// cheap.
+  Status replace_matrix(const SparseMatrix& A, Work& work) override;
+  LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+
+ private:
+  LinearSolverOptions options_;
+  SparseMatrix matrix_;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver_;
+  Vector residual_;
 };
 
 }  // namespace fw::linalg

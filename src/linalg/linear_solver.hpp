@@ -14,9 +14,14 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Takes the values of A (copied or factorised); the pattern is analysed at the first call only. Failures:
-  /// matrix_singular (LU), matrix_indefinite (Cholesky, block-Jacobi).
+  /// Takes the values of A and factorises them, or makes a preconditioner from them; the pattern is analysed
+  /// at the first call only. Failures: matrix_singular (LU), matrix_indefinite (Cholesky, block-Jacobi),
+  /// non_finite.
   virtual Status factorise(const SparseMatrix& A, Work& work) = 0;
+
+  /// Takes new values of A. An iterative solver keeps the preconditioner of the last `factorise`, a direct
+  /// one factorises anew. `factorise` has succeeded before.
+  virtual Status replace_matrix(const SparseMatrix& A, Work& work) = 0;
 
   /// Solves with the last `A`. `x` is the initial guess of an iterative solver. Every solver reports its true
   /// residual, and one that does not reach the tolerance has failed.
@@ -24,16 +29,54 @@ class LinearSolver {
 };
 
 enum class LinearSolverKind {
-  conjugate_gradient,  ///< symmetric positive definite; block-Jacobi preconditioner (3×3)
-  sparse_cholesky,     ///< symmetric positive definite; LLᵀ with approximate minimum degree ordering
-  sparse_lu,           ///< any regular matrix; KLU [Davis, Palamadai Natarajan 2010]
+  conjugate_gradient,        ///< own conjugate gradients; block-Jacobi preconditioner (3×3)
+  sparse_cholesky,           ///< Eigen's LLᵀ with approximate minimum degree ordering
+  sparse_ldlt,               ///< Eigen's LDLᵀ: symmetric, definite or not (no pivoting)
+  sparse_lu,                 ///< any regular matrix; KLU [Davis, Palamadai Natarajan 2010]
+  eigen_conjugate_gradient,  ///< Eigen's conjugate gradients with a diagonal preconditioner
+  eigen_sparse_lu,           ///< Eigen's supernodal LU with column approximate minimum degree ordering
+  cholmod,                   ///< supernodal LLᵀ of CHOLMOD [Chen, Davis, Hager, Rajamanickam 2008]
+  petsc,                     ///< PETSc's KSP with options of the user
+};
+
+/// Storage of the matrix in PETSc.
+enum class PetscMatrixType {
+  aij,    ///< compressed rows
+  baij,   ///< compressed rows of 3×3 blocks (1×1 where the size is no multiple of three)
+  sbaij,  ///< the upper triangle of it, for symmetric matrices
 };
 
 struct LinearSolverOptions {
   LinearSolverKind kind = LinearSolverKind::conjugate_gradient;
-  double relative_tolerance = 1e-10;  ///< of conjugate gradients
-  std::uint64_t max_iterations = 0;   ///< of conjugate gradients; 0: ten times the number of unknowns
+  double relative_tolerance = 1e-10;  ///< ‖b − A x‖₂/‖b‖₂ of iterative solvers
+  std::uint64_t max_iterations = 0;   ///< of iterative solvers; 0: ten times the number of unknowns
+  /// Options in PETSc's own notation, such as "-ksp_type cg -pc_type gamg". They override everything else.
+  std::string petsc_options{};
+  PetscMatrixType petsc_matrix = PetscMatrixType::aij;
+  /// Positions x₀, y₀, z₀, x₁, … of the particles [m], from which PETSc's algebraic multigrid takes the rigid
+  /// body modes as near-null space; empty: none.
+  Vector coordinates{};
 };
+
+/// What is known of a solver.
+struct LinearSolverInfo {
+  std::string name;   ///< as it is called, for example "cholmod"
+  std::string title;  ///< for people
+  LinearSolverKind kind;
+  bool needs_symmetric;  ///< reads one triangle or relies on A = Aᵀ; petsc: depends on the options, so false
+  bool needs_definite;   ///< fails on symmetric indefinite matrices
+  bool is_iterative;
+};
+
+/// Every solver; the only place where one is registered beside its class.
+const std::vector<LinearSolverInfo>& linear_solvers();
+
+/// The solver of that name; throws InputError with the nearest name.
+const LinearSolverInfo& find_linear_solver(const std::string& name);
+const LinearSolverInfo& find_linear_solver(LinearSolverKind kind);
+
+/// The names of all, for people: "cg, cholesky or lu".
+std::string linear_solver_names();
 
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options);
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "ode/integrator.hpp"
+
+namespace fw::oracles {
+
+/// The state of a run inside a foreign solver, which owns its stepping: one call, one step.
+class ForeignStepper {
+ public:
+  virtual ~ForeignStepper() = default;
+
+  /// Advances by one step of the solver's choice that does not go beyond `limit` and writes the time reached
+  /// and the state there. With a constant step the loop sets `limit` to the end of the step, and the solver
+  /// has to land on it. A failure is a Status with the library's own reason; `t` and `y` then stay or are the
+  /// last good ones.
+  virtual Status advance(double limit, double& t, VectorRef y) = 0;
+
+  /// Whether `interpolate` is the solver's own; otherwise the loop uses cubic Hermite polynomials.
+  virtual bool has_dense_output() const = 0;
+
+  /// y(t) inside the last step.
+  virtual void interpolate(double t, VectorRef out) = 0;
+
+  /// Adds what only the library has counted (steps rejected, factorisations, ...) to `work`. Called once, at
+  /// the end. Accepted steps are counted by the loop, calls of our functions where they happen.
+  virtual void collect_work(Work& work) const = 0;
+};
+
+/// Makes the state of a run. `control` has been checked; where it is adaptive its tolerances are already
+/// those that the library is to get. `work` and `ivp` outlive the stepper.
+using ForeignStepperFactory =
+    std::function<std::unique_ptr<ForeignStepper>(const Ivp& ivp, const StepControl& control, Work& work)>;
+
+/// How the tolerances of a run reach the library (decision 0017): multiplied by `factor`, relative ones not
+/// below `smallest_relative` unless they were so already.
+struct ToleranceScaling {
+  double factor = 1.0;
+  double smallest_relative = 1e-13;
+};
+
+/// A foreign solver behind the interface of our own schemes: checks of the step control, the time loop, limit
+/// of steps, steps that no longer advance time, values that are not finite, observers and dense output are
+/// the same for all of them.
+class OracleIntegrator final : public Integrator {
+ public:
+  OracleIntegrator(MethodInfo info, ForeignStepperFactory make_stepper, ToleranceScaling scaling = {})
+      : info_(std::move(info)), make_stepper_(std::move(make_stepper)), scaling_(scaling) {}
+
+  const MethodInfo& info() const override { return info_; }
+  const ExtendedSolver& extended_solver() const override { return no_extended_solver_; }
+
+ private:
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
+
+  MethodInfo info_;
+  ForeignStepperFactory make_stepper_;
+  ToleranceScaling scaling_;
+  ExtendedSolver no_extended_solver_;
+};
+
+}  // namespace fw::oracles
