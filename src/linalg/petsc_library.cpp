@@ -65,7 +65,9 @@ class Library {
   ~Library() {
     int is_ended = 0;
     MPI_Finalized(&is_ended);
-    if (is_ended == 0) SlepcFinalize();
+    if (is_ended != 0) return;
+    PetscPopErrorHandler();
+    SlepcFinalize();
   }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
@@ -75,6 +77,40 @@ void start_library() {
   library_mutex();
   said();  // both outlive the library
   static const Library library;
+}
+
+bool ends_with(const std::string& name, std::string_view end) {
+  return name.size() >= end.size() && std::string_view(name).substr(name.size() - end.size()) == end;
+}
+
+/// Types and numbers of the commonest options, looked at before any object reads them: PETSc 3.18 loses the
+/// memory of its menu when a value in it is refused. `options` are a copy, since a look counts as use.
+void check_values(PetscOptions options, const std::vector<std::string>& names) {
+  const std::pair<const char*, PetscFunctionList> type_lists[] = {
+      {"ksp_type", KSPList}, {"pc_type", PCList}, {"snes_type", SNESList}, {"ts_type", TSList}};
+  for (const std::string& name : names) {
+    for (const auto& [end, list] : type_lists) {
+      char value[PETSC_MAX_PATH_LEN] = "";
+      PetscBool is_set = PETSC_FALSE;
+      if (!ends_with(name, end)) continue;
+      petsc_check(PetscOptionsGetString(options, nullptr, name.c_str(), value, sizeof(value), &is_set));
+      void (*found)(void) = nullptr;
+      petsc_check(PetscFunctionListFind(list, value, &found));
+      if (found == nullptr) {
+        throw PetscFailure(PETSC_ERR_ARG_UNKNOWN_TYPE, fmt::format("{}: unknown type \"{}\"", name, value));
+      }
+    }
+    for (const char* end : {"_rtol", "_atol", "_stol", "_divtol"}) {
+      PetscReal value = 0.0;
+      if (ends_with(name, end))
+        petsc_check(PetscOptionsGetReal(options, nullptr, name.c_str(), &value, nullptr));
+    }
+    for (const char* end : {"_max_it", "_restart", "_levels", "_max_reject", "_max_snes_failures"}) {
+      PetscInt value = 0;
+      if (ends_with(name, end))
+        petsc_check(PetscOptionsGetInt(options, nullptr, name.c_str(), &value, nullptr));
+    }
+  }
 }
 
 }  // namespace
@@ -132,6 +168,11 @@ PetscOptionText::PetscOptionText(const std::string& text) : text_(text) {
   const PetscSession session;
   std::istringstream words(text);
   bool value_may_follow = false;
+  std::vector<std::string> names;
+  struct Copy {
+    PetscOptions options = nullptr;
+    ~Copy() { PetscOptionsDestroy(&options); }
+  } copy;
   for (std::string word; words >> word;) {
     PetscBool is_name = PETSC_FALSE;
     petsc_check(PetscOptionsValidKey(word.c_str(), &is_name));
@@ -140,15 +181,19 @@ PetscOptionText::PetscOptionText(const std::string& text) : text_(text) {
                                    text, word));
     }
     value_may_follow = is_name == PETSC_TRUE;
+    if (is_name == PETSC_TRUE) names.push_back(word);
   }
-  petsc_check(PetscOptionsCreate(&options_));
-  if (const PetscErrorCode code = PetscOptionsInsertString(options_, text.c_str()); code != 0) {
+  try {
+    const auto parse = [&](PetscOptions* into) {
+      petsc_check(PetscOptionsCreate(into));
+      petsc_check(PetscOptionsInsertString(*into, text.c_str()));
+    };
+    parse(&copy.options);
+    check_values(copy.options, names);
+    parse(&options_);
+  } catch (const PetscFailure& failure) {
     PetscOptionsDestroy(&options_);
-    try {
-      petsc_check(code);
-    } catch (const PetscFailure& failure) {
-      detail::throw_bad_option(*this, failure);
-    }
+    detail::throw_bad_option(*this, failure);
   }
 }
 

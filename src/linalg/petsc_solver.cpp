@@ -95,6 +95,13 @@ class PetscSolver::Engine {
   /// New values and a new preconditioner.
   Status set_up(const SparseMatrix& A) {
     const PetscSession session(&text_);
+    PetscBool is_multigrid = PETSC_FALSE;
+    petsc_check(
+        PetscObjectTypeCompare(reinterpret_cast<PetscObject>(preconditioner_), PCGAMG, &is_multigrid));
+    if (is_multigrid == PETSC_TRUE && options_.petsc_matrix != PetscMatrixType::aij) {
+      // PETSc fails as well, but loses memory by it.
+      return {StatusCode::library_failure, "PETSc's multigrid (-pc_type gamg) works on AIJ matrices only"};
+    }
     matrix_.set_values(A);
     petsc_check(KSPSetReusePreconditioner(solver_, PETSC_FALSE));
     if (is_first_) {

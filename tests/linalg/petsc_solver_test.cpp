@@ -221,7 +221,7 @@ TEST(PetscSolver, FailsWithPetscsReasonWhereASolverDoesNotSupportTheStorage) {
     const Outcome outcome = solve_once(petsc(text, storage), step.matrix, step.right_side);
     const Status& status = outcome.set_up.ok() ? outcome.solve.status : outcome.set_up;
     EXPECT_EQ(status.code, StatusCode::library_failure) << text << ": " << status.describe();
-    EXPECT_THAT(status.message, HasSubstr("PETSc error")) << text;
+    EXPECT_THAT(status.message, HasSubstr("PETSc")) << text;
   }
 }
 
