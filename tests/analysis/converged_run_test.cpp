@@ -23,7 +23,7 @@ TEST(ConvergedRun, BoundsItsErrorWithConstantStepsAndWithTolerances) {
   Vector expected(ivp.y0.size());
   for (Index i = 0; i < expected.size(); ++i)
     expected[i] = static_cast<double>(exact[static_cast<std::size_t>(i)]);
-  for (const char* name : {"explicit_euler", "heun", "rk4", "dormand_prince_54", "fehlberg_45"}) {
+  for (const char* name : {"explicit_euler", "heun", "rk4", "dormand_prince_54", "fehlberg_54"}) {
     for (bool constant : {true, false}) {
       SCOPED_TRACE(name);
       const auto scheme = integrators::explicit_runge_kutta(name);
