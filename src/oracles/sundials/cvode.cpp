@@ -1,6 +1,10 @@
 #include "oracles/sundials/cvode.hpp"
 
+#include <cvodes/cvodes.h>
 #include <fmt/format.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_klu.h>
+#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <algorithm>
 #include <string>
@@ -12,6 +16,11 @@ namespace fw::oracles {
 namespace {
 
 using namespace detail;
+
+struct CvodeDeleter {
+  void operator()(void* memory) const { CVodeFree(&memory); }
+};
+using CvodePointer = std::unique_ptr<void, CvodeDeleter>;
 
 /// Relative tolerances below this drown in rounding.
 constexpr double smallest_relative_tolerance = 1e-13;
