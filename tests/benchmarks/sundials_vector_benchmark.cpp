@@ -1,4 +1,3 @@
-#include <arkode/arkode_butcher_erk.h>
 #include <arkode/arkode_erkstep.h>
 #include <benchmark/benchmark.h>
 
