@@ -316,7 +316,7 @@ TEST(EigenVector, FusesWhatItWouldDoOneByOne) {
   std::vector<double> c = {1.0, -0.5, 2.0,  0.25, -1.0, 3.0,  1.5,  -0.75, 0.125, 1.0,  -2.0, 0.3,
                            0.7, -0.2, 1.1,  0.9,  -1.3, 0.4,  0.6,  -0.8,  1.7,   2.2,  -0.1, 0.05,
                            1.9, -2.6, 0.55, 0.45, 1.2,  -1.4, 0.35, 0.65,  -0.95, 1.05, 0.15};
-  for (std::size_t count = 1; count <= c.size(); ++count) {
+  for (const std::size_t count : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13, 17, 35}) {
     const int n = static_cast<int>(count);
     const std::string of = " of " + std::to_string(count);
     // The sum of many terms has other intermediate roundings than a chain of linear sums.
