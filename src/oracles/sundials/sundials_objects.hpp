@@ -1,12 +1,14 @@
 #pragma once
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_sparse.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+#include <sundials/sundials_nonlinearsolver.h>
+#include <sundials/sundials_nvector.h>
 
 #include <memory>
+#include <string>
+#include <type_traits>
 
 #include "core/error.hpp"
 #include "core/types.hpp"
@@ -26,15 +28,16 @@ struct MatrixDeleter {
 struct LinearSolverDeleter {
   void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
 };
-struct CvodeDeleter {
-  void operator()(void* memory) const { CVodeFree(&memory); }
+struct NonlinearSolverDeleter {
+  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
 };
 
 using ContextPointer = std::unique_ptr<std::remove_pointer_t<SUNContext>, ContextDeleter>;
 using VectorPointer = std::unique_ptr<std::remove_pointer_t<N_Vector>, VectorDeleter>;
 using MatrixPointer = std::unique_ptr<std::remove_pointer_t<SUNMatrix>, MatrixDeleter>;
 using LinearSolverPointer = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, LinearSolverDeleter>;
-using CvodePointer = std::unique_ptr<void, CvodeDeleter>;
+using NonlinearSolverPointer =
+    std::unique_ptr<std::remove_pointer_t<SUNNonlinearSolver>, NonlinearSolverDeleter>;
 
 inline ContextPointer make_context() {
   SUNContext context = nullptr;
@@ -46,6 +49,13 @@ inline ContextPointer make_context() {
 inline void require(int flag, const char* call) {
   if (flag < 0)
     throw SystemError(std::string("SUNDIALS: ") + call + " failed with flag " + std::to_string(flag));
+}
+
+/// The owner of what a SUNDIALS constructor has returned; a null pointer is a failure of `call`.
+template <class Owner>
+Owner own(typename Owner::pointer object, const char* call) {
+  if (object == nullptr) throw SystemError(std::string("SUNDIALS: ") + call + " returned nothing");
+  return Owner(object);
 }
 
 /// The entries of an N_Vector as an Eigen vector, without a copy.
