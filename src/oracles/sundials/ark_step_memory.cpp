@@ -16,13 +16,12 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
                                  implicit_part_ ? implicit_function : nullptr, t0, y0, context),
                    "ARKStepCreate")) {
   void* memory = memory_.get();
-  require(ARKStepSetErrHandlerFn(memory, keep_error_message, &report_), "ARKStepSetErrHandlerFn");
+  require(ARKStepSetErrHandlerFn(memory, keep_message, &report_), "ARKStepSetErrHandlerFn");
   require(ARKStepSetUserData(memory, this), "ARKStepSetUserData");
   require(ARKStepSetTables(memory, tables.order, tables.embedded_order, tables.implicit_part.get(),
                            tables.explicit_part.get()),
           "ARKStepSetTables");
   require(ARKStepSetMaxNumSteps(memory, -1), "ARKStepSetMaxNumSteps");
-  require(ARKStepSetMaxHnilWarns(memory, -1), "ARKStepSetMaxHnilWarns");
   if (implicit_part_) {
     linear_solver_.emplace(implicit_part_->pattern(), y0, context);
     require(ARKStepSetLinearSolver(memory, linear_solver_->solver.get(), linear_solver_->matrix.get()),

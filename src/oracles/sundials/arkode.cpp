@@ -25,6 +25,7 @@ class ArkodeStepper final : public ForeignStepper {
                 const StepControl& control, Work& work)
       : time_(ivp.t0),
         is_adaptive_(std::holds_alternative<AdaptiveStep>(control)),
+        check_stall_(ivp.t0),
         state_(ivp.y0),
         dense_(ivp.y0.size()),
         context_(make_context()),
@@ -47,17 +48,19 @@ class ArkodeStepper final : public ForeignStepper {
       require(ARKStepSetFixedStep(ark_.get(), limit - time_), "ARKStepSetFixedStep");
     }
     report_.message.clear();
-    int flag = ARKStepEvolve(ark_.get(), limit, state_vector_.get(), &time_, ARK_ONE_STEP);
+    double reached = time_;  // where it fails, the time of a stage
+    int flag = ARKStepEvolve(ark_.get(), limit, state_vector_.get(), &reached, ARK_ONE_STEP);
     while (flag == ARK_CONV_FAILURE && !is_adaptive_ && !report_.met_non_finite &&
            ark_.last_linear_flag() == 0 && ark_.raise_stage_tolerance()) {
-      flag = ARKStepEvolve(ark_.get(), limit, state_vector_.get(), &time_, ARK_ONE_STEP);
+      flag = ARKStepEvolve(ark_.get(), limit, state_vector_.get(), &reached, ARK_ONE_STEP);
     }
     report_.guard.rethrow();
     if (flag < 0) {
       return describe_failure(code_of_arkode_flag(flag, ark_.last_linear_flag(), report_), "ARKODE", time_,
                               ARKStepGetReturnFlagName(flag), report_);
     }
-    report_.met_non_finite = false;
+    time_ = reached;
+    if (Status status = check_stall_("ARKODE", time_, report_); !status.ok()) return status;
     t = is_adaptive_ ? time_ : limit;  // t + h may differ from it by a rounding
     y = state_;
     return {};
@@ -87,6 +90,7 @@ class ArkodeStepper final : public ForeignStepper {
   double time_;  ///< as ARKODE has it
   bool is_adaptive_;
   RunReport report_;
+  StallCheck check_stall_;
   Vector state_, dense_;
   ContextPointer context_;
   VectorPointer state_vector_, dense_vector_;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "core/error.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/ark_step_memory.hpp"
@@ -66,12 +69,11 @@ class MriStepper final : public ForeignStepper {
                           {});
     }
     void* memory = memory_.get();
-    require(MRIStepSetErrHandlerFn(memory, keep_error_message, &report_), "MRIStepSetErrHandlerFn");
+    require(MRIStepSetErrHandlerFn(memory, keep_message, &report_), "MRIStepSetErrHandlerFn");
     require(MRIStepSetUserData(memory, &slow_), "MRIStepSetUserData");
     const CouplingPointer coupling = built_in_coupling(options.coupling);
     require(MRIStepSetCoupling(memory, coupling.get()), "MRIStepSetCoupling");
     require(MRIStepSetMaxNumSteps(memory, -1), "MRIStepSetMaxNumSteps");
-    require(MRIStepSetMaxHnilWarns(memory, -1), "MRIStepSetMaxHnilWarns");
   }
 
   Status advance(double limit, double& t, VectorRef y) override {
@@ -81,9 +83,11 @@ class MriStepper final : public ForeignStepper {
       require(ARKStepSetFixedStep(inner_.get(), step / inner_steps_), "ARKStepSetFixedStep");
     }
     report_.message.clear();
-    const int flag = MRIStepEvolve(memory_.get(), limit, state_vector_.get(), &time_, ARK_ONE_STEP);
+    double reached = time_;
+    const int flag = MRIStepEvolve(memory_.get(), limit, state_vector_.get(), &reached, ARK_ONE_STEP);
     report_.guard.rethrow();
     if (flag < 0) return failure(flag);
+    time_ = reached;
     report_.met_non_finite = false;
     t = limit;  // t + h may differ from it by a rounding
     y = state_;

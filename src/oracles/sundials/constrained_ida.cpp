@@ -41,6 +41,11 @@ class ConstrainedStepper final : public ForeignStepper {
     Vector kinds = Vector::Ones(ida_.form().size());
     kinds.tail(2 * constraints.size()).setZero();
     ida_.set_kinds(kinds);
+    // δλ moves velocities by h M⁻¹Gᵀδλ and δμ positions likewise: the smaller the step, the less of their
+    // digits matter, and the more of them are lost to rounding.
+    Vector scale = Vector::Zero(ida_.form().size());
+    scale.tail(2 * constraints.size()).setConstant(ivp.system->second_order()->mass().mean());
+    ida_.set_tolerances_per_step(scale);
     const Index n = constraints.degrees_of_freedom();
     start_ = check_independence(*ivp.system->second_order(), constraints, ivp.y0.head(n));
     if (!start_.ok()) return;
@@ -66,7 +71,7 @@ class ConstrainedStepper final : public ForeignStepper {
   void collect_work(Work& work) const override { ida_.collect_work(work); }
 
  private:
-  auto lambda() const { return ida_.state().tail(constraints_.size()); }
+  Vector lambda() const { return ida_.state().tail(constraints_.size()); }
 
   double excess_of(ConstVectorRef y, bool of_velocity) {
     const Index n = constraints_.degrees_of_freedom();

@@ -7,7 +7,11 @@ namespace fw::oracles::detail {
 IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const Vector& y0,
                      const Vector& dydt0, const AdaptiveStep& tolerances, Work& work)
     : form_(std::move(form)),
+      start_(t0),
+      relative_tolerance_(tolerances.relative_tolerance),
+      absolute_tolerance_(tolerances.absolute_tolerance),
       work_(work),
+      check_stall_(t0),
       state_(y0),
       slope_(dydt0),
       dense_(y0.size()),
@@ -20,7 +24,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
       linear_solver_(form_->pattern(), state_vector_.get(), context_.get()),
       memory_(made(IDACreate(context_.get()), "IDACreate")) {
   void* memory = memory_.get();
-  require(IDASetErrHandlerFn(memory, keep_error_message, &report_), "IDASetErrHandlerFn");
+  require(IDASetErrHandlerFn(memory, keep_message, &report_), "IDASetErrHandlerFn");
   require(IDAInit(memory, residual_function, t0, state_vector_.get(), slope_vector_.get()), "IDAInit");
   require(IDASetUserData(memory, this), "IDASetUserData");
   require(IDASStolerances(memory, tolerances.relative_tolerance, tolerances.absolute_tolerance),
@@ -47,10 +51,30 @@ void IdaMemory::set_kinds(const Vector& is_differential) {
   require(IDASetSuppressAlg(get(), SUNTRUE), "IDASetSuppressAlg");
 }
 
+void IdaMemory::set_tolerances_per_step(const Vector& scale) {
+  scale_per_step_ = scale;
+  require(IDAWFtolerances(get(), error_weights), "IDAWFtolerances");
+}
+
+int IdaMemory::error_weights(N_Vector y, N_Vector weights, void* self) {
+  auto& run = *static_cast<IdaMemory*>(self);
+  return run.report_.guard.call([&] {
+    double step = 0.0;  // 0 before the first one
+    IDAGetCurrentStep(run.get(), &step);
+    const Index n = run.form_->size();
+    VectorMap weight = mutable_view(weights, n);
+    weight = run.relative_tolerance_ * view(y, n).cwiseAbs();
+    weight.array() += run.absolute_tolerance_;
+    if (step > 0.0) weight += (run.absolute_tolerance_ / step) * run.scale_per_step_;
+    weight = weight.cwiseInverse();
+    return weight.allFinite() ? 0 : -1;
+  });
+}
+
 Status IdaMemory::correct_initial_values(double first_output) {
   const int flag = IDACalcIC(get(), IDA_YA_YDP_INIT, first_output);
   report_.guard.rethrow();
-  if (flag < 0) return failure(flag, 0.0);
+  if (flag < 0) return failure(flag, start_);
   require(IDAGetConsistentIC(get(), state_vector_.get(), slope_vector_.get()), "IDAGetConsistentIC");
   report_.met_non_finite = false;
   return {};
@@ -62,8 +86,7 @@ Status IdaMemory::advance(double limit, double& t) {
       IDASolve(get(), limit, &t, state_vector_.get(), slope_vector_.get(), IDA_ONE_STEP);
   report_.guard.rethrow();
   if (flag < 0) return failure(flag, t);
-  report_.met_non_finite = false;
-  return {};
+  return check_stall_("IDA", t, report_);
 }
 
 void IdaMemory::interpolate(double t, VectorRef out) {

@@ -28,6 +28,10 @@ class IdaMemory {
   /// error test leaves out.
   void set_kinds(const Vector& is_differential);
 
+  /// Tolerances of unknowns whose error counts by what it does in a step: entry i, of those above 0, has the
+  /// absolute tolerance (that of the run)·`scale[i]`/h. To be called before the first step.
+  void set_tolerances_per_step(const Vector& scale);
+
   /// IDACalcIC with IDA_YA_YDP_INIT: algebraic unknowns and ẏ of the differential ones, from y of the latter.
   Status correct_initial_values(double first_output);
 
@@ -41,11 +45,15 @@ class IdaMemory {
   static int residual_function(sunrealtype t, N_Vector y, N_Vector dydt, N_Vector residual, void* self);
   static int jacobian_function(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector, N_Vector, SUNMatrix J,
                                void* self, N_Vector, N_Vector, N_Vector);
+  static int error_weights(N_Vector y, N_Vector weights, void* self);
   Status failure(int flag, double t) const;
 
   std::unique_ptr<DaeForm> form_;
+  double start_, relative_tolerance_, absolute_tolerance_;
+  Vector scale_per_step_;
   Work& work_;
   RunReport report_;
+  StallCheck check_stall_;
   Vector state_, slope_, dense_, kinds_;
   ContextPointer context_;
   VectorPointer state_vector_, slope_vector_, dense_vector_, kinds_vector_;

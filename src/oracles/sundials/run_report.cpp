@@ -24,8 +24,7 @@ StatusCode code_of_failed_solve(long last_linear_flag, const RunReport& report) 
 
 }  // namespace
 
-void keep_error_message(int error_code, const char*, const char*, char* text, void* report) noexcept {
-  if (error_code > 0) return;  // a warning
+void keep_message(int, const char*, const char*, char* text, void* report) noexcept {
   static_cast<RunReport*>(report)->guard.call([&] {
     static_cast<RunReport*>(report)->message = text;
     return 0;
@@ -38,6 +37,21 @@ Status describe_failure(StatusCode code, const char* library, double t, char* fl
                                   report.message.empty() ? "" : ": ", report.message)};
   std::free(flag_name);
   return status;
+}
+
+Status StallCheck::operator()(const char* library, double t, RunReport& report) {
+  constexpr int most_steps_without_progress = 10;
+  if (t > reached_) {
+    reached_ = t;
+    steps_without_progress_ = 0;
+    report.met_non_finite = false;
+    return {};
+  }
+  if (++steps_without_progress_ < most_steps_without_progress) return {};
+  return {report.met_non_finite ? StatusCode::non_finite : StatusCode::step_too_small,
+          fmt::format("{} at t = {:.6g}: the step fell below the rounding of t{}{}{}", library, t,
+                      report.met_non_finite ? ", before a right-hand side that is not finite" : "",
+                      report.message.empty() ? "" : ": ", report.message)};
 }
 
 StatusCode code_of_arkode_flag(int flag, long last_linear_flag, const RunReport& report) {
