@@ -21,6 +21,10 @@ struct ArkodeOptions {
   double newton_tolerance = 1e-14;
 };
 
+/// Of the implicit methods: their estimate of the error of a step understates that of the solution by two
+/// digits more than the explicit ones' (decision 0023).
+inline constexpr ArkodeOptions implicit_arkode_options{.tolerance_factor = 1e-2};
+
 /// ARKODE's engine for explicit Runge–Kutta methods with one of its own tables (`arkode_explicit_tables`) or
 /// one of our tableaus. Adaptive where there is an error estimate, and constant steps; dense output by
 /// ARKStepGetDky. `Work::rhs_evaluations` counts each call of a part of the right-hand side.
@@ -33,15 +37,15 @@ std::unique_ptr<Integrator> make_arkode_erk(const schemes::ButcherTableau& table
 /// The same for diagonally implicit methods (`arkode_diagonally_implicit_tables`): Newton's iteration with
 /// our sparse Jacobian and KLU.
 std::unique_ptr<Integrator> make_arkode_dirk(const std::string& table = "ark548l2sa_dirk_8_4_5",
-                                             const ArkodeOptions& options = {});
+                                             const ArkodeOptions& options = implicit_arkode_options);
 std::unique_ptr<Integrator> make_arkode_dirk(const schemes::ButcherTableau& tableau,
-                                             const ArkodeOptions& options = {});
+                                             const ArkodeOptions& options = implicit_arkode_options);
 
 /// The same for additive methods (`arkode_additive_tables`): (v, M⁻¹f_stiff) is implicit, (0, M⁻¹f_soft)
 /// explicit, as the system splits its forces.
 std::unique_ptr<Integrator> make_arkode_imex(const std::string& table = "ark548l2sa_8_4_5",
-                                             const ArkodeOptions& options = {});
+                                             const ArkodeOptions& options = implicit_arkode_options);
 std::unique_ptr<Integrator> make_arkode_imex(const schemes::AdditiveTableau& tableau,
-                                             const ArkodeOptions& options = {});
+                                             const ArkodeOptions& options = implicit_arkode_options);
 
 }  // namespace fw::oracles

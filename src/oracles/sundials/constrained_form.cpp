@@ -10,9 +10,11 @@ using constraints::DistanceConstraints;
 
 class ConstrainedForm final : public DaeForm {
  public:
-  ConstrainedForm(const SecondOrderSystem& system, const DistanceConstraints& constraints)
+  ConstrainedForm(const SecondOrderSystem& system, const DistanceConstraints& constraints,
+                  ConstraintExcess held)
       : system_(system),
         constraints_(constraints),
+        held_(std::move(held)),
         n_(system.degrees_of_freedom()),
         m_(constraints.size()),
         stiffness_(system.tangent_pattern()),
@@ -36,6 +38,8 @@ class ConstrainedForm final : public DaeForm {
     velocity_row = mass.cwiseProduct(dydt.segment(n_, n_)) - velocity_row;
     constraints_.value(q, residual.segment(2 * n_, m_));
     constraints_.product(q, v, residual.tail(m_));
+    residual.segment(2 * n_, m_) -= held_.position;
+    residual.tail(m_) -= held_.velocity;
   }
 
   const SparseMatrix& pattern() const override { return jacobian_.matrix(); }
@@ -89,6 +93,7 @@ class ConstrainedForm final : public DaeForm {
 
   const SecondOrderSystem& system_;
   const DistanceConstraints& constraints_;
+  ConstraintExcess held_;
   Index n_, m_;
   SparseMatrix stiffness_, damping_;
   SparseAssembly jacobian_;
@@ -96,9 +101,17 @@ class ConstrainedForm final : public DaeForm {
 
 }  // namespace
 
+ConstraintExcess excess(const DistanceConstraints& constraints, ConstVectorRef q, ConstVectorRef v) {
+  ConstraintExcess result{Vector(constraints.size()), Vector(constraints.size())};
+  constraints.value(q, result.position);
+  constraints.product(q, v, result.velocity);
+  return result;
+}
+
 std::unique_ptr<DaeForm> make_constrained_form(const SecondOrderSystem& system,
-                                               const DistanceConstraints& constraints) {
-  return std::make_unique<ConstrainedForm>(system, constraints);
+                                               const DistanceConstraints& constraints,
+                                               ConstraintExcess held) {
+  return std::make_unique<ConstrainedForm>(system, constraints, std::move(held));
 }
 
 }  // namespace fw::oracles::detail

@@ -17,6 +17,19 @@ namespace {
 using namespace detail;
 using constraints::DistanceConstraints;
 
+double largest(const Vector& values) {
+  return values.size() == 0 ? 0.0 : values.lpNorm<Eigen::Infinity>();
+}
+
+/// What the start leaves of the constraints, where that is below the tolerance; zero otherwise.
+ConstraintExcess within_tolerance(const DistanceConstraints& constraints, const Vector& y0, double tolerance) {
+  const Index n = constraints.degrees_of_freedom();
+  ConstraintExcess start = excess(constraints, y0.head(n), y0.segment(n, n));
+  if (largest(start.position) > tolerance) start.position.setZero();
+  if (largest(start.velocity) > tolerance) start.velocity.setZero();
+  return start;
+}
+
 /// (q₀, v₀, 0, 0)
 Vector with_multipliers(const Vector& y0, Index count) {
   Vector unknowns = Vector::Zero(y0.size() + 2 * count);
@@ -31,11 +44,12 @@ class ConstrainedStepper final : public ForeignStepper {
       : constraints_(constraints),
         options_(options),
         result_(result),
-        excess_(constraints.size()),
         // From ẏ = 0 and λ = μ = 0 the first correction of IDACalcIC is an infinitesimal step of the
         // linearised equations: it satisfies g = 0 and G v = 0 at its end too, and thereby what is hidden in
         // them, G v̇ + G(v) v = 0.
-        ida_(make_constrained_form(*ivp.system->second_order(), constraints), ivp.t0, ivp.t1,
+        ida_(make_constrained_form(*ivp.system->second_order(), constraints,
+                                   within_tolerance(constraints, ivp.y0, tolerances.absolute_tolerance)),
+             ivp.t0, ivp.t1,
              with_multipliers(ivp.y0, constraints.size()),
              Vector::Zero(ivp.y0.size() + 2 * constraints.size()), tolerances, work) {
     Vector kinds = Vector::Ones(ida_.form().size());
@@ -51,8 +65,9 @@ class ConstrainedStepper final : public ForeignStepper {
     if (!start_.ok()) return;
     start_ = ida_.correct_initial_values(ivp.t1);
     if (!start_.ok()) {
+      const ConstraintExcess off = excess(constraints, ivp.y0.head(n), ivp.y0.segment(n, n));
       start_.message += fmt::format("; at the start |g| = {:.3g} m, |G v| = {:.3g} m/s",
-                                    excess_of(ivp.y0, false), excess_of(ivp.y0, true));
+                                    largest(off.position), largest(off.velocity));
       return;
     }
     result_.initial_multipliers = lambda();
@@ -73,19 +88,11 @@ class ConstrainedStepper final : public ForeignStepper {
  private:
   Vector lambda() const { return ida_.state().tail(constraints_.size()); }
 
-  double excess_of(ConstVectorRef y, bool of_velocity) {
-    const Index n = constraints_.degrees_of_freedom();
-    if (of_velocity) {
-      constraints_.product(y.head(n), y.segment(n, n), excess_);
-    } else {
-      constraints_.value(y.head(n), excess_);
-    }
-    return excess_.size() == 0 ? 0.0 : excess_.lpNorm<Eigen::Infinity>();
-  }
-
   void show(double t) {
-    result_.position_drift = std::max(result_.position_drift, excess_of(ida_.state(), false));
-    result_.velocity_drift = std::max(result_.velocity_drift, excess_of(ida_.state(), true));
+    const Index n = constraints_.degrees_of_freedom();
+    const ConstraintExcess drift = excess(constraints_, ida_.state().head(n), ida_.state().segment(n, n));
+    result_.position_drift = std::max(result_.position_drift, largest(drift.position));
+    result_.velocity_drift = std::max(result_.velocity_drift, largest(drift.velocity));
     result_.multipliers = lambda();
     if (options_.observe_multipliers) options_.observe_multipliers(t, result_.multipliers);
   }
@@ -93,7 +100,6 @@ class ConstrainedStepper final : public ForeignStepper {
   const DistanceConstraints& constraints_;
   const ConstrainedOptions& options_;
   ConstrainedSolution& result_;
-  Vector excess_;
   Status start_;
   IdaMemory ida_;
 };

@@ -104,7 +104,7 @@ TEST(Ida, GivesItsReasonWhereTheRightHandSideIsNoNumber) {
   const Solution solution = make_ida()->solve(scalar_problem(BecomesNaN{}), AdaptiveStep{}, observer);
   EXPECT_EQ(solution.status.code, StatusCode::non_finite) << solution.status.describe();
   EXPECT_NE(solution.status.message.find("IDA at t = 0."), std::string::npos) << solution.status.describe();
-  EXPECT_NE(solution.status.message.find("IDA_"), std::string::npos) << solution.status.describe();
+  EXPECT_NE(solution.status.message.find("not finite"), std::string::npos) << solution.status.describe();
   EXPECT_TRUE(solution.state.allFinite());
   EXPECT_GT(solution.time, 0.3);
   EXPECT_LE(solution.time, 0.5);
