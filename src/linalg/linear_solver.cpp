@@ -31,8 +31,8 @@ const LinearSolverInfo& find_linear_solver(const std::string& name) {
     if (info.name == name) return info;
     names.push_back(info.name);
   }
-  throw InputError(fmt::format("unknown linear solver \"{}\"{}, expected {}", name, did_you_mean(name, names),
-                               linear_solver_names()));
+  throw InputError(fmt::format("unknown linear solver \"{}\", expected {}{}", name, linear_solver_names(),
+                               did_you_mean(name, names)));
 }
 
 const LinearSolverInfo& find_linear_solver(LinearSolverKind kind) {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "linalg/linear_solver.hpp"
+#include "linalg/petsc_library.hpp"
+
+namespace fw::linalg {
+
+/// Our compressed columns as a matrix of PETSc. The pattern and the place of every entry are found once; new
+/// values are then written straight into PETSc's array.
+class PetscMatrix {
+ public:
+  /// `A` is compressed and square. Storage of blocks needs 3×3 blocks: where the size is no multiple of three
+  /// they are 1×1. `sbaij` takes the entries of the upper block triangle only.
+  PetscMatrix(const SparseMatrix& A, PetscMatrixType type);
+
+  /// Takes the values of `A`, which has the pattern of the first one.
+  void set_values(const SparseMatrix& A);
+
+  /// Whether `A` has size and pattern of the first one (row indices are not compared).
+  bool fits(const SparseMatrix& A) const;
+
+  Mat get() const { return matrix_; }
+  PetscInt block_size() const { return block_size_; }
+
+ private:
+  PetscMatrixType type_;
+  PetscInt block_size_ = 1;
+  PetscMat matrix_;
+  std::vector<PetscInt> place_;  ///< of each entry of A in PETSc's array of values; −1: not stored
+};
+
+}  // namespace fw::linalg
