@@ -192,8 +192,8 @@ TEST(LinearSolvers, AreFoundByNameOrSayWhichThereAre) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "unknown linear solver \"colmod\", did you mean \"cholmod\"?, expected cg, cholesky, ldlt, lu, "
-        "eigen_cg, eigen_lu, cholmod or petsc");
+        "unknown linear solver \"colmod\", expected cg, cholesky, ldlt, lu, eigen_cg, eigen_lu, cholmod or "
+        "petsc; did you mean \"cholmod\"?");
   }
 }
 

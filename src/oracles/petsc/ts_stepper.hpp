@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "oracles/foreign_stepper.hpp"
+#include "oracles/petsc/ts_equations.hpp"
+
+namespace fw::oracles {
+
+/// What makes one method out of TS.
+struct TsMethod {
+  std::string type;                     ///< TSType
+  TsForm form = TsForm::explicit_form;  ///< of the equations
+  std::function<void(TS)> configure{};  ///< sets what belongs to the type
+  bool has_dense_output = false;        ///< TSInterpolate is at least as good as a cubic Hermite polynomial
+  int order = 1;                        ///< for the first step
+  std::string petsc_options{};          ///< of the user, in PETSc's notation
+};
+
+/// A run of PETSc's TS: one TSStep per call. Newton's iteration with PETSc's full steps, linear systems by
+/// KLU unless the user's options say otherwise.
+class TsStepper final : public ForeignStepper {
+ public:
+  /// Throws InputError for options that PETSc does not take.
+  TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work);
+
+  Status advance(double limit, double& t, VectorRef y) override;
+  bool has_dense_output() const override { return has_dense_output_; }
+  void interpolate(double t, VectorRef out) override;
+  void collect_work(Work& work) const override;
+
+ private:
+  void configure(const TsMethod& method);
+  void set_solver_defaults();
+  Status failure(TSConvergedReason reason, double t);
+
+  std::string name_;
+  bool has_dense_output_;
+  bool is_implicit_;
+  bool is_adaptive_;
+  bool is_first_ = true;
+  bool has_monitor_;
+  double t_;
+  linalg::PetscOptionText text_;
+  TsEquations equations_;
+  linalg::PetscTs stepper_;
+};
+
+}  // namespace fw::oracles
