@@ -80,10 +80,9 @@ MethodEntry arkode_erk() {
 MethodEntry arkode_dirk() {
   const ArkodeOptions defaults = oracles::implicit_arkode_options;
   const std::string table = "ark548l2sa_dirk_8_4_5";
-  return arkode<schemes::ButcherTableau>(
-      "sundials:arkode_dirk", table, schemes::diagonally_implicit_tableaus,
-      arkode_options(table, "diagonally implicit", defaults, true), defaults, oracles::make_arkode_dirk,
-      oracles::make_arkode_dirk);
+  return arkode<schemes::ButcherTableau>("sundials:arkode_dirk", table, schemes::diagonally_implicit_tableaus,
+                                         arkode_options(table, "diagonally implicit", defaults, true),
+                                         defaults, oracles::make_arkode_dirk, oracles::make_arkode_dirk);
 }
 
 MethodEntry arkode_imex() {

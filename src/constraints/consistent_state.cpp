@@ -64,8 +64,7 @@ Status project_on_constraints(const SecondOrderSystem& system, const DistanceCon
   Vector g(constraints.size()), impulse(q.size());
   const auto move = [&](VectorRef target) {
     impulse.setZero();
-    constraints.add_transposed_product(q, constraint_matrix(system, constraints, q).ldlt().solve(g),
-                                       impulse);
+    constraints.add_transposed_product(q, constraint_matrix(system, constraints, q).ldlt().solve(g), impulse);
     target -= impulse.cwiseQuotient(system.mass());
   };
   double before = std::numeric_limits<double>::infinity();
@@ -74,8 +73,9 @@ Status project_on_constraints(const SecondOrderSystem& system, const DistanceCon
     const double excess = g.lpNorm<Eigen::Infinity>();
     if (excess <= 1e-15 * scale || (excess <= 1e-12 * scale && excess >= before)) break;
     if (n == most_projections || !g.allFinite()) {
-      return {StatusCode::newton_failed,
-              fmt::format("{} projections on the distance constraints left an excess of {:.3g} m", n, excess)};
+      return {
+          StatusCode::newton_failed,
+          fmt::format("{} projections on the distance constraints left an excess of {:.3g} m", n, excess)};
     }
     before = excess;
     move(q);

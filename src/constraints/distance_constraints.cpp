@@ -21,16 +21,15 @@ DistanceConstraints::DistanceConstraints(const SecondOrderSystem& system,
     const auto& [first, second, length] = list_[c];
     for (const int particle : {first, second}) {
       if (particle < 0 || particle >= n / 3) {
-        throw InputError(fmt::format("constraint[{}]: found particle {}, expected an index below {}", c,
-                                     particle, n / 3));
+        throw InputError(
+            fmt::format("constraint[{}]: found particle {}, expected an index below {}", c, particle, n / 3));
       }
     }
     if (first == second) {
       throw InputError(fmt::format("constraint[{}]: both ends are particle {}", c, first));
     }
     if (!is_free_[static_cast<std::size_t>(3 * first)] && !is_free_[static_cast<std::size_t>(3 * second)]) {
-      throw InputError(
-          fmt::format("constraint[{}]: particles {} and {} are both fixed", c, first, second));
+      throw InputError(fmt::format("constraint[{}]: particles {} and {} are both fixed", c, first, second));
     }
     if (!(length > 0.0) || !std::isfinite(length)) {
       throw InputError(

@@ -1,6 +1,7 @@
 #include "oracles/sundials/ark_step_memory.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace fw::oracles::detail {
 
@@ -22,6 +23,7 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
                            tables.explicit_part.get()),
           "ARKStepSetTables");
   require(ARKStepSetMaxNumSteps(memory, -1), "ARKStepSetMaxNumSteps");
+  require(ARKStepSetMaxHnilWarns(memory, std::numeric_limits<int>::max()), "ARKStepSetMaxHnilWarns");
   if (implicit_part_) {
     linear_solver_.emplace(implicit_part_->pattern(), y0, context);
     require(ARKStepSetLinearSolver(memory, linear_solver_->solver.get(), linear_solver_->matrix.get()),
@@ -46,6 +48,7 @@ void ArkStepMemory::choose_steps(const AdaptiveStep& tolerances, const StageAccu
   if (implicit_part_) {
     require(ARKStepSetNonlinConvCoef(memory, accuracy.newton_coefficient), "ARKStepSetNonlinConvCoef");
     require(ARKStepSetMaxNonlinIters(memory, 6), "ARKStepSetMaxNonlinIters");
+    renew_matrix_at_each_stage();
   }
 }
 
@@ -55,11 +58,14 @@ void ArkStepMemory::take_constant_steps(double scale, const StageAccuracy& accur
   scale_ = scale > 0.0 ? scale : 1.0;
   require(ARKStepSStolerances(memory, stage_tolerance_, stage_tolerance_ * scale_), "ARKStepSStolerances");
   if (!implicit_part_) return;
-  // A matrix per stage, so that a few corrections reach the level of rounding.
   require(ARKStepSetNonlinConvCoef(memory, 0.1), "ARKStepSetNonlinConvCoef");
   require(ARKStepSetMaxNonlinIters(memory, 30), "ARKStepSetMaxNonlinIters");
-  require(ARKStepSetLSetupFrequency(memory, 1), "ARKStepSetLSetupFrequency");
-  require(ARKStepSetJacEvalFrequency(memory, 1), "ARKStepSetJacEvalFrequency");
+  renew_matrix_at_each_stage();
+}
+
+void ArkStepMemory::renew_matrix_at_each_stage() {
+  require(ARKStepSetLSetupFrequency(memory_.get(), -1), "ARKStepSetLSetupFrequency");
+  require(ARKStepSetJacEvalFrequency(memory_.get(), 1), "ARKStepSetJacEvalFrequency");
 }
 
 bool ArkStepMemory::raise_stage_tolerance() {

@@ -44,6 +44,12 @@ class ArkStepMemory {
   void collect_work(Work& work) const;
 
  private:
+  /// ARKODE estimates the rate of Newton's iteration from all stages since the matrix was made, letting it
+  /// fall by 0.3 per iteration. On forces that are almost linear the estimate becomes tiny, and where then
+  /// the step changes by less than 20 % and the matrix stays, one correction that is far from converged
+  /// passes: an error of 2e-5 in a single step at rtol = 1e-10 was measured on the harmonic oscillator. A new
+  /// matrix sets the estimate back to 1.
+  void renew_matrix_at_each_stage();
   static int explicit_function(sunrealtype t, N_Vector y, N_Vector dydt, void* self);
   static int implicit_function(sunrealtype t, N_Vector y, N_Vector dydt, void* self);
   static int jacobian_function(sunrealtype t, N_Vector y, N_Vector, SUNMatrix J, void* self, N_Vector,

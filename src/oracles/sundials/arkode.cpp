@@ -101,10 +101,10 @@ std::unique_ptr<Integrator> make_arkode(std::string name, std::string title, Ark
                                         const ArkodeOptions& options) {
   if (!(options.tolerance_factor > 0.0) || !(options.newton_coefficient > 0.0) ||
       !(options.newton_tolerance > 0.0)) {
-    throw InputError(fmt::format("tolerance_factor {}, newton_coefficient {}, newton_tolerance {}: expected "
-                                 "numbers > 0",
-                                 options.tolerance_factor, options.newton_coefficient,
-                                 options.newton_tolerance));
+    throw InputError(
+        fmt::format("tolerance_factor {}, newton_coefficient {}, newton_tolerance {}: expected "
+                    "numbers > 0",
+                    options.tolerance_factor, options.newton_coefficient, options.newton_tolerance));
   }
   const bool is_additive = tables.explicit_part && tables.implicit_part;
   const ARKodeButcherTable any =

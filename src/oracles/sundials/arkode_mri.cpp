@@ -142,8 +142,7 @@ class MriStepper final : public ForeignStepper {
 
 std::unique_ptr<Integrator> make_arkode_mri(const MriOptions& options) {
   if (options.inner_steps < 0) {
-    throw InputError(
-        fmt::format("inner_steps: found {}, expected a whole number >= 0", options.inner_steps));
+    throw InputError(fmt::format("inner_steps: found {}, expected a whole number >= 0", options.inner_steps));
   }
   if (!(options.inner_tolerance > 0.0)) {
     throw InputError(
@@ -154,18 +153,18 @@ std::unique_ptr<Integrator> make_arkode_mri(const MriOptions& options) {
   if (options.inner_steps == 0 && tables->embedded_order == 0) {
     throw InputError(fmt::format("inner_table \"{}\" has no error estimate: give inner_steps", tables->name));
   }
-  MethodInfo info{.name = "sundials:arkode_mri",
-                  .title = fmt::format("ARKODE, multirate infinitesimal {} over {}", options.coupling,
-                                       tables->name),
-                  .family = "oracle",
-                  .order = coupling->q,
-                  .order_with_velocity_forces = coupling->q,
-                  .stages = coupling->stages - 1,
-                  .is_explicit = !options.inner_is_implicit,
-                  .needs_second_order = true,
-                  .needs_force_splitting = true,
-                  .formula = "v' = f_stiff(t, v) + sum_j w_ij((t - t_n)/h) f_soft(y_j) between the stages",
-                  .reference = "[Sandu 2019; Reynolds et al. 2023]"};
+  MethodInfo info{
+      .name = "sundials:arkode_mri",
+      .title = fmt::format("ARKODE, multirate infinitesimal {} over {}", options.coupling, tables->name),
+      .family = "oracle",
+      .order = coupling->q,
+      .order_with_velocity_forces = coupling->q,
+      .stages = coupling->stages - 1,
+      .is_explicit = !options.inner_is_implicit,
+      .needs_second_order = true,
+      .needs_force_splitting = true,
+      .formula = "v' = f_stiff(t, v) + sum_j w_ij((t - t_n)/h) f_soft(y_j) between the stages",
+      .reference = "[Sandu 2019; Reynolds et al. 2023]"};
   return std::make_unique<OracleIntegrator>(
       std::move(info),
       [options, tables](const Ivp& ivp, const StepControl&, Work& work) -> std::unique_ptr<ForeignStepper> {

@@ -35,8 +35,7 @@ struct IdaDeleter {
 
 using ArkStepPointer = std::unique_ptr<void, ArkStepDeleter>;
 using MriStepPointer = std::unique_ptr<void, MriStepDeleter>;
-using InnerStepperPointer =
-    std::unique_ptr<std::remove_pointer_t<MRIStepInnerStepper>, InnerStepperDeleter>;
+using InnerStepperPointer = std::unique_ptr<std::remove_pointer_t<MRIStepInnerStepper>, InnerStepperDeleter>;
 using ButcherTablePointer = std::unique_ptr<std::remove_pointer_t<ARKodeButcherTable>, ButcherTableDeleter>;
 using CouplingPointer = std::unique_ptr<std::remove_pointer_t<MRIStepCoupling>, CouplingDeleter>;
 using IdaPointer = std::unique_ptr<void, IdaDeleter>;
@@ -50,8 +49,7 @@ Pointer made(Pointer object, const char* call) {
 
 /// An N_Vector over `entries`, which are not copied and have to outlive it.
 inline VectorPointer wrap_entries(VectorRef entries, SUNContext context) {
-  return VectorPointer(
-      made(N_VMake_Serial(entries.size(), entries.data(), context), "N_VMake_Serial"));
+  return VectorPointer(made(N_VMake_Serial(entries.size(), entries.data(), context), "N_VMake_Serial"));
 }
 
 /// A sparse matrix and KLU for it.

@@ -72,8 +72,8 @@ class ConstrainedForm final : public DaeForm {
     }
     for_each_entry(stiffness_, [&](Index i, Index j, double value) { entry(n_ + i, j, -value); });
     for_each_entry(damping_, [&](Index i, Index j, double value) { entry(n_ + i, n_ + j, -value); });
-    constraints_.for_each_second_derivative(
-        y.segment(mu, m_), [&](Index i, Index j, double value) { entry(i, j, -value); });
+    constraints_.for_each_second_derivative(y.segment(mu, m_),
+                                            [&](Index i, Index j, double value) { entry(i, j, -value); });
     constraints_.for_each_second_derivative(
         y.segment(lambda, m_), [&](Index i, Index j, double value) { entry(n_ + i, j, -value); });
     constraints_.for_each_derivative(q, [&](Index c, Index i, double slope) {

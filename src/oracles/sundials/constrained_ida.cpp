@@ -22,7 +22,8 @@ double largest(const Vector& values) {
 }
 
 /// What the start leaves of the constraints, where that is below the tolerance; zero otherwise.
-ConstraintExcess within_tolerance(const DistanceConstraints& constraints, const Vector& y0, double tolerance) {
+ConstraintExcess within_tolerance(const DistanceConstraints& constraints, const Vector& y0,
+                                  double tolerance) {
   const Index n = constraints.degrees_of_freedom();
   ConstraintExcess start = excess(constraints, y0.head(n), y0.segment(n, n));
   if (largest(start.position) > tolerance) start.position.setZero();
@@ -49,8 +50,7 @@ class ConstrainedStepper final : public ForeignStepper {
         // them, G v̇ + G(v) v = 0.
         ida_(make_constrained_form(*ivp.system->second_order(), constraints,
                                    within_tolerance(constraints, ivp.y0, tolerances.absolute_tolerance)),
-             ivp.t0, ivp.t1,
-             with_multipliers(ivp.y0, constraints.size()),
+             ivp.t0, ivp.t1, with_multipliers(ivp.y0, constraints.size()),
              Vector::Zero(ivp.y0.size() + 2 * constraints.size()), tolerances, work) {
     Vector kinds = Vector::Ones(ida_.form().size());
     kinds.tail(2 * constraints.size()).setZero();
@@ -130,9 +130,8 @@ ConstrainedSolution solve_constrained(const Ivp& ivp, const DistanceConstraints&
       constrained_info(),
       [&](const Ivp& checked_ivp, const StepControl& step_control,
           Work& work) -> std::unique_ptr<ForeignStepper> {
-        return std::make_unique<ConstrainedStepper>(checked_ivp, constraints,
-                                                    std::get<AdaptiveStep>(step_control), options, result,
-                                                    work);
+        return std::make_unique<ConstrainedStepper>(
+            checked_ivp, constraints, std::get<AdaptiveStep>(step_control), options, result, work);
       },
       ToleranceScaling{.factor = options.tolerance_factor});
   const SecondOrderSystem* system = ivp.system ? ivp.system->second_order() : nullptr;

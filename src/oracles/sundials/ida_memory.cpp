@@ -82,8 +82,7 @@ Status IdaMemory::correct_initial_values(double first_output) {
 
 Status IdaMemory::advance(double limit, double& t) {
   report_.message.clear();
-  const int flag =
-      IDASolve(get(), limit, &t, state_vector_.get(), slope_vector_.get(), IDA_ONE_STEP);
+  const int flag = IDASolve(get(), limit, &t, state_vector_.get(), slope_vector_.get(), IDA_ONE_STEP);
   report_.guard.rethrow();
   if (flag < 0) return failure(flag, t);
   return check_stall_("IDA", t, report_);

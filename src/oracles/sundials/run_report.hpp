@@ -16,7 +16,7 @@ struct RunReport {
 
 /// A SUNDIALS error handler: keeps the message in the RunReport in place of printing it.
 void keep_message(int error_code, const char* module, const char* function, char* text,
-                        void* report) noexcept;
+                  void* report) noexcept;
 
 /// What the flag of a failed step means for people: "ARKODE at t = 0.5: ARK_CONV_FAILURE: <message>".
 /// `flag_name` was allocated by the library and is freed.

@@ -4,8 +4,7 @@
 
 namespace fw::oracles::detail {
 
-SparseAssembly::SparseAssembly(Index rows, Index columns,
-                               const std::vector<std::pair<Index, Index>>& places)
+SparseAssembly::SparseAssembly(Index rows, Index columns, const std::vector<std::pair<Index, Index>>& places)
     : matrix_(rows, columns) {
   std::vector<Eigen::Triplet<double, int>> entries;
   entries.reserve(places.size());

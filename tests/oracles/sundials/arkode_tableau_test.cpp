@@ -78,8 +78,8 @@ TEST(SameTableau, GivesTheSameStepsInArkodeForEveryExplicitTableau) {
   EXPECT_GE(list.size(), 17u);
   for (const ButcherTableau& tableau : list) {
     for (const Ivp& ivp : problems()) {
-      const double difference =
-          largest_difference(*integrators::make_explicit_runge_kutta(tableau), *make_arkode_erk(tableau), ivp);
+      const double difference = largest_difference(*integrators::make_explicit_runge_kutta(tableau),
+                                                   *make_arkode_erk(tableau), ivp);
       EXPECT_LE(difference, same_step) << tableau.name;
       RecordProperty(tableau.name + "_" + std::to_string(ivp.y0.size()), std::to_string(difference * 1e16));
     }
@@ -91,8 +91,8 @@ TEST(SameTableau, GivesTheSameStepsInArkodeForEveryDiagonallyImplicitTableau) {
   EXPECT_GE(list.size(), 11u);
   for (const ButcherTableau& tableau : list) {
     for (const Ivp& ivp : problems()) {
-      const double difference = largest_difference(*integrators::make_diagonally_implicit_runge_kutta(tableau),
-                                                   *make_arkode_dirk(tableau), ivp);
+      const double difference = largest_difference(
+          *integrators::make_diagonally_implicit_runge_kutta(tableau), *make_arkode_dirk(tableau), ivp);
       EXPECT_LE(difference, same_step) << tableau.name;
       RecordProperty(tableau.name + "_" + std::to_string(ivp.y0.size()), std::to_string(difference * 1e16));
     }

@@ -131,8 +131,7 @@ TEST(Arkode, InterpolatesBetweenItsSteps) {
             for (const double theta : {0.0, 0.3, 1.0}) {
               const double t = previous_ + theta * (view.time - previous_);
               view.interpolate(t, out);
-              largest =
-                  std::max(largest, std::abs(out[0] - static_cast<double>(problem_.exact(t)[0])));
+              largest = std::max(largest, std::abs(out[0] - static_cast<double>(problem_.exact(t)[0])));
             }
             ++count;
           }
@@ -149,7 +148,8 @@ TEST(Arkode, InterpolatesBetweenItsSteps) {
       const Solution solution = method->solve(problem.ivp, control, observer);
       ASSERT_TRUE(solution.status.ok()) << solution.status.describe();
       EXPECT_EQ(observer.count, solution.work.accepted_steps);
-      EXPECT_LT(observer.largest, 1e-5) << method->info().name;
+      // At the ends of steps too: it was 1e-3 where ARKODE was left to decide when to renew its matrix.
+      EXPECT_LT(observer.largest, 1e-6) << method->info().name;
     }
   }
 }
@@ -220,9 +220,8 @@ TEST(Arkode, GivesItsReasonWhereTheMatrixIsSingular) {
 TEST(Arkode, GivesItsReasonWhereNewtonDiverges) {
   NullObserver observer;
   const auto method = make_arkode_dirk();
-  for (const StepControl& control :
-       {StepControl(AdaptiveStep{.initial_step = 0.1, .minimum_step = 0.05}),
-        StepControl(FixedStep{.step = 0.1})}) {
+  for (const StepControl& control : {StepControl(AdaptiveStep{.initial_step = 0.1, .minimum_step = 0.05}),
+                                     StepControl(FixedStep{.step = 0.1})}) {
     const Solution solution = method->solve(scalar_problem(MisledNewton{}), control, observer);
     EXPECT_EQ(solution.status.code, StatusCode::newton_failed) << solution.status.describe();
     EXPECT_NE(solution.status.message.find("ARK_CONV_FAILURE"), std::string::npos)

@@ -76,8 +76,8 @@ TEST(ConstrainedIda, FollowsThePendulumOfEllipticFunctionsToItsTolerance) {
           solve_constrained(ivp, pendulum.rod(), tolerance(asked), {}, comparison);
       ASSERT_TRUE(result.solution.status.ok()) << result.solution.status.describe();
       EXPECT_EQ(result.solution.time, ivp.t1);
-      // Within what the motion makes of an initial angle that is off by the tolerance; up to 60 degrees within
-      // the tolerance itself.
+      // Within what the motion makes of an initial angle that is off by the tolerance; up to 60 degrees
+      // within the tolerance itself.
       EXPECT_LE(comparison.largest, asked * magnified) << degrees << " degrees";
       if (degrees <= 60.0) {
         EXPECT_LE(comparison.largest, asked) << degrees << " degrees";
@@ -127,13 +127,13 @@ TEST(ConstrainedIda, HasTheTensionOfTheRodAsMultiplier) {
   const Pendulum pendulum(120.0 * degree);
   double largest = 0.0;
   NullObserver observer;
-  const ConstrainedSolution result = solve_constrained(
-      pendulum.ivp(2.0), pendulum.rod(), tolerance(1e-9),
-      {.observe_multipliers =
-           [&](double t, ConstVectorRef lambda) {
-             largest = std::max(largest, std::abs(-lambda[0] - pendulum.at(t).tension));
-           }},
-      observer);
+  const ConstrainedSolution result =
+      solve_constrained(pendulum.ivp(2.0), pendulum.rod(), tolerance(1e-9),
+                        {.observe_multipliers =
+                             [&](double t, ConstVectorRef lambda) {
+                               largest = std::max(largest, std::abs(-lambda[0] - pendulum.at(t).tension));
+                             }},
+                        observer);
   ASSERT_TRUE(result.solution.status.ok()) << result.solution.status.describe();
   EXPECT_LT(largest, 1e-4);  // of up to 50 N; the error test leaves multipliers out
   EXPECT_NEAR(-result.initial_multipliers[0], pendulum.at(0.0).tension, 1e-9);
@@ -195,8 +195,7 @@ TEST(ConstrainedIda, AgreesWithAVeryStiffSpringInPlaceOfTheRod) {
   const ConstrainedSolution rod = solve_constrained(ivp, pendulum.rod(), tolerance(1e-9), {}, observer);
   ASSERT_TRUE(rod.solution.status.ok());
   const auto deviation = [&](double stiffness) {
-    mechanics::MassSpringModel model =
-        dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system).model();
+    mechanics::MassSpringModel model = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system).model();
     model.springs.first = {0};
     model.springs.second = {1};
     model.springs.stiffness = {stiffness};
@@ -248,9 +247,8 @@ TEST(ConstrainedIda, FindsMultipliersOfAStateThatMoves) {
   NullObserver observer;
   const ConstrainedSolution result =
       solve_constrained(pendulum.ivp, pendulum.rods(), tolerance(1e-8), {}, observer);
-  const Vector expected =
-      constraints::multipliers(*pendulum.system, pendulum.rods(), 0.0, pendulum.ivp.y0.head(9),
-                               pendulum.ivp.y0.tail(9));
+  const Vector expected = constraints::multipliers(*pendulum.system, pendulum.rods(), 0.0,
+                                                   pendulum.ivp.y0.head(9), pendulum.ivp.y0.tail(9));
   ASSERT_EQ(result.initial_multipliers.size(), 2);
   EXPECT_LE((result.initial_multipliers - expected).lpNorm<Eigen::Infinity>(), 1e-8);
   EXPECT_GT(expected.lpNorm<Eigen::Infinity>(), 0.1);
@@ -263,16 +261,15 @@ TEST(ConstrainedIda, ReportsAStateOffTheConstraintsWithTheLibrarysReasonOrProjec
   too_long.y0.segment(3, 3) *= 1.05;
   too_fast.y0[9] += 0.5;
   for (const Ivp& ivp : {too_long, too_fast}) {
-    const ConstrainedSolution refused =
-        solve_constrained(ivp, pendulum.rod(), tolerance(1e-6), {}, observer);
+    const ConstrainedSolution refused = solve_constrained(ivp, pendulum.rod(), tolerance(1e-6), {}, observer);
     EXPECT_FALSE(refused.solution.status.ok());
     EXPECT_NE(refused.solution.status.message.find("IDA"), std::string::npos);
     EXPECT_NE(refused.solution.status.message.find("at the start |g| ="), std::string::npos)
         << refused.solution.status.describe();
     EXPECT_EQ(refused.solution.time, ivp.t0);
     EXPECT_EQ(refused.solution.state, ivp.y0);
-    const ConstrainedSolution projected = solve_constrained(ivp, pendulum.rod(), tolerance(1e-6),
-                                                            {.project_initial_state = true}, observer);
+    const ConstrainedSolution projected =
+        solve_constrained(ivp, pendulum.rod(), tolerance(1e-6), {.project_initial_state = true}, observer);
     EXPECT_TRUE(projected.solution.status.ok()) << projected.solution.status.describe();
     EXPECT_LT(projected.position_drift, 1e-6);
   }
@@ -301,9 +298,8 @@ TEST(ConstrainedIda, StopsWithAStatusWhereTheRodsReachASingularConfiguration) {
   ivp.y0[3] = 0.6;
   ivp.y0[6] = 1.2;
   NullObserver observer;
-  const ConstrainedSolution result =
-      solve_constrained(ivp, DistanceConstraints(*system, {{0, 1, 0.6}, {1, 2, 0.6}}), tolerance(1e-6), {},
-                        observer);
+  const ConstrainedSolution result = solve_constrained(
+      ivp, DistanceConstraints(*system, {{0, 1, 0.6}, {1, 2, 0.6}}), tolerance(1e-6), {}, observer);
   EXPECT_EQ(result.solution.status.code, StatusCode::matrix_singular);
 }
 

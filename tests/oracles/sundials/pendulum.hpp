@@ -1,7 +1,7 @@
 #pragma once
 
-#include <gsl/gsl_sf_elljac.h>
 #include <gsl/gsl_sf_ellint.h>
+#include <gsl/gsl_sf_elljac.h>
 
 #include <cmath>
 #include <memory>
