@@ -149,9 +149,11 @@ class SolverCase {
     if (status.ok()) status = measure();
     CaseResult result;
     result.verdict = status.ok() ? Verdict::holds : Verdict::fails;
-    result.reason = status.ok() ? fmt::format("true residual {:.1e} after at most {} iterations",
-                                              largest_residual_, most_iterations_)
-                                : status.describe();
+    result.reason = !status.ok() ? status.describe()
+                    : most_iterations_ == 0
+                        ? fmt::format("true residual at most {:.1e}", largest_residual_)
+                        : fmt::format("true residual at most {:.1e}, at most {} iterations",
+                                      largest_residual_, most_iterations_);
     add_columns(result);
     add_summary(system_, figures_, result);
     return result;
