@@ -249,7 +249,7 @@ std::vector<MethodEntry> make_list() {
                     }});
   }
   for (MethodEntry& entry : specialised_schemes()) list.push_back(std::move(entry));
-  for (auto* oracle_methods : {sundials_methods, petsc_methods, gsl_methods}) {
+  for (auto* oracle_methods : {sundials_methods, arkode_methods, petsc_methods, gsl_methods}) {
     for (MethodEntry& entry : oracle_methods()) list.push_back(std::move(entry));
   }
   return list;

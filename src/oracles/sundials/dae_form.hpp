@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "ode/ode_system.hpp"
+
+namespace fw::oracles::detail {
+
+/// An implicit system F(t, y, ẏ) = 0 as IDA solves it, with work space of its own for one run.
+class DaeForm {
+ public:
+  virtual ~DaeForm() = default;
+
+  /// N, the number of unknowns.
+  virtual Index size() const = 0;
+
+  /// residual = F(t, y, ẏ).
+  virtual void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) = 0;
+
+  /// A matrix with the pattern of the Jacobian.
+  virtual const SparseMatrix& pattern() const = 0;
+
+  /// cj ∂F/∂ẏ + ∂F/∂y, of `pattern()`.
+  virtual const SparseMatrix& jacobian(double t, double cj, ConstVectorRef y) = 0;
+};
+
+/// ẏ − f(t, y) = 0, or where the system has second order q̇ − v = 0, M v̇ − f(t, q, v) = 0. The system
+/// outlives it.
+std::unique_ptr<DaeForm> make_residual_form(const OdeSystem& system);
+
+}  // namespace fw::oracles::detail
