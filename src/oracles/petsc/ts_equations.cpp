@@ -91,8 +91,6 @@ void TsEquations::attach(TS stepper) {
   if (form_ == TsForm::second_order) {
     make_vector(n / 2, state_);
     make_vector(n / 2, velocity_);
-    petsc_check(VecDuplicate(state_, dense_.out()));
-    petsc_check(VecDuplicate(state_, dense_velocity_.out()));
     *WritableVectorView(state_) = y0_.head(n / 2);
     *WritableVectorView(velocity_) = y0_.tail(n / 2);
     petsc_check(TSSetI2Function(stepper, nullptr, second_order_residual, this));
@@ -102,7 +100,6 @@ void TsEquations::attach(TS stepper) {
     return;
   }
   make_vector(form_ == TsForm::autonomous ? n + 1 : n, state_);
-  petsc_check(VecDuplicate(state_, dense_.out()));
   {
     const WritableVectorView state(state_);
     (*state).head(n) = y0_;
@@ -140,11 +137,6 @@ void TsEquations::copy_state(VectorRef y) const {
   } else {
     y = (*VectorView(state_)).head(y.size());
   }
-}
-
-void TsEquations::interpolate(TS stepper, double t, VectorRef y) {
-  petsc_check(TSInterpolate(stepper, t, dense_));
-  y = (*VectorView(dense_)).head(y.size());
 }
 
 void TsEquations::rethrow() {
