@@ -128,8 +128,9 @@ Status status_of(SNESConvergedReason reason, KSPConvergedReason linear, double r
     case SNES_DIVERGED_FUNCTION_DOMAIN:
       return {StatusCode::non_finite, found};
     case SNES_DIVERGED_LINEAR_SOLVE:
-      return {linear == KSP_DIVERGED_PC_FAILED ? StatusCode::matrix_singular : StatusCode::linear_solver_failed,
-              fmt::format("{}, KSP_{}", found, KSPConvergedReasons[linear])};
+      return {
+          linear == KSP_DIVERGED_PC_FAILED ? StatusCode::matrix_singular : StatusCode::linear_solver_failed,
+          fmt::format("{}, KSP_{}", found, KSPConvergedReasons[linear])};
     default:
       return {StatusCode::newton_failed, found};
   }
@@ -150,7 +151,8 @@ void check(const SecondOrderSystem& system, ConstVectorRef start, const Equilibr
   }
 }
 
-void configure(SNES solver, const EquilibriumOptions& options, double target, const linalg::PetscOptionText& text) {
+void configure(SNES solver, const EquilibriumOptions& options, double target,
+               const linalg::PetscOptionText& text) {
   KSP linear = nullptr;
   PC factorisation = nullptr;
   petsc_check(SNESSetType(solver, options.kind == NewtonKind::trust_region ? SNESNEWTONTR : SNESNEWTONLS));
@@ -179,12 +181,12 @@ StaticEquilibrium find_static_equilibrium(const SecondOrderSystem& system, Const
   ForceBalance balance(system, start, time, options, result.work);
   const double first = balance.residual(start);
   // Rounding of the spring forces: K x ε.
-  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * start.lpNorm<Eigen::Infinity>() *
-                          [&] {
-                            SparseMatrix K = system.tangent_pattern();
-                            system.stiffness(time, start, Vector::Zero(start.size()), TangentModel::exact, K);
-                            return K.nonZeros() > 0 ? K.coeffs().abs().maxCoeff() : 0.0;
-                          }();
+  const double rounding =
+      64.0 * std::numeric_limits<double>::epsilon() * start.lpNorm<Eigen::Infinity>() * [&] {
+        SparseMatrix K = system.tangent_pattern();
+        system.stiffness(time, start, Vector::Zero(start.size()), TangentModel::exact, K);
+        return K.nonZeros() > 0 ? K.coeffs().abs().maxCoeff() : 0.0;
+      }();
   const double target = std::max(options.residual_tolerance * first, rounding);
   if (!std::isfinite(first)) {
     result.residual = first;

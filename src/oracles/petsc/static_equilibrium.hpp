@@ -37,10 +37,10 @@ struct StaticEquilibrium {
   Work work;
 };
 
-/// Solves f(t, x, 0) = 0 for the positions by PETSc's SNES, with KLU on the tangent stiffness matrix, fresh in
-/// every iteration [Balay et al. 2022]. Fixed degrees of freedom stay where they are. It finds an equilibrium,
-/// not necessarily a stable one. Throws InputError where sizes or options are out of range; hands on what the
-/// system throws.
+/// Solves f(t, x, 0) = 0 for the positions by PETSc's SNES, with KLU on the tangent stiffness matrix, fresh
+/// in every iteration [Balay et al. 2022]. Fixed degrees of freedom stay where they are. It finds an
+/// equilibrium, not necessarily a stable one. Throws InputError where sizes or options are out of range;
+/// hands on what the system throws.
 StaticEquilibrium find_static_equilibrium(const SecondOrderSystem& system, ConstVectorRef start,
                                           double time = 0.0, const EquilibriumOptions& options = {});
 

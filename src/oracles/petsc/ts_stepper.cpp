@@ -143,6 +143,11 @@ Status TsStepper::advance(double limit, double& t, VectorRef y) {
       reached = limit;
       petsc_check(TSSetTime(stepper_, limit));
     }
+    if (is_adaptive_ && reached - t_ < 1e-12 * std::max(std::abs(t_), step) && equations_.take_non_finite()) {
+      return {StatusCode::non_finite,
+              fmt::format("{} at t = {:.6g}: the right-hand side is not finite, however small the step",
+                          name_, t_)};
+    }
     if (has_monitor_) {
       PetscInt count = 0;
       Vec state = nullptr;
