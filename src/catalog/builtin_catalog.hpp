@@ -10,6 +10,11 @@ namespace fw::catalog {
 class BuiltinCatalog final : public study::Catalog {
  public:
   std::unique_ptr<Integrator> method(const std::string& call) const override { return make_method(call); }
+  std::vector<std::string> method_names() const override {
+    std::vector<std::string> names;
+    for (const MethodEntry& entry : methods()) names.push_back(entry.name);
+    return names;
+  }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     return find_problem(name).make(parameters);
   }

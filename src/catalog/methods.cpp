@@ -93,10 +93,9 @@ MethodEntry linearised_implicit_euler() {
           {},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
-            const auto name = options.find("linear_solver");
-            if (name != options.end())
-              chosen.linear_solver.kind = linalg::find_linear_solver(name->second).kind;
-            chosen.linear_solver.petsc_options = text(options, "petsc");
+            const std::string name = text(options, "linear_solver");
+            const std::string petsc = text(options, "petsc");
+            chosen.linear_solver = linalg::read_linear_solver((name.empty() ? "cg" : name) + " " + petsc);
             chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
             chosen.tangent =
                 choose<TangentModel>(options, "tangent", TangentModel::exact,

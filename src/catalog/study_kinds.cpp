@@ -1,12 +1,15 @@
 #include "catalog/study_kinds.hpp"
 
+#include "study/agreement.hpp"
 #include "study/convergence.hpp"
+#include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
 
 namespace fw::catalog {
 
 const std::vector<study::StudyKind>& study_kinds() {
-  static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::simulate_kind()};
+  static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::agreement_kind(),
+                                                     study::linear_solver_kind(), study::simulate_kind()};
   return list;
 }
 

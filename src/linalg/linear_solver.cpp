@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 #include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "linalg/cholmod_solver.hpp"
@@ -31,8 +33,8 @@ const LinearSolverInfo& find_linear_solver(const std::string& name) {
     if (info.name == name) return info;
     names.push_back(info.name);
   }
-  throw InputError(fmt::format("unknown linear solver \"{}\"{}, expected {}", name, did_you_mean(name, names),
-                               linear_solver_names()));
+  throw InputError(fmt::format("unknown linear solver \"{}\", expected {}{}", name, linear_solver_names(),
+                               did_you_mean(name, names)));
 }
 
 const LinearSolverInfo& find_linear_solver(LinearSolverKind kind) {
@@ -49,6 +51,31 @@ std::string linear_solver_names() {
     text += (i == 0 ? "" : i + 1 == list.size() ? " or " : ", ") + list[i].name;
   }
   return text;
+}
+
+LinearSolverOptions read_linear_solver(const std::string& call) {
+  std::istringstream words(call);
+  std::string name;
+  words >> name;
+  LinearSolverOptions options{.kind = find_linear_solver(name).kind};
+  for (std::string word; words >> word;) {
+    if (options.kind != LinearSolverKind::petsc) {
+      throw InputError(fmt::format("linear solver \"{}\" takes no options, found \"{}\"", name, word));
+    }
+    if (word != "-mat_type") {
+      options.petsc_options += (options.petsc_options.empty() ? "" : " ") + word;
+      continue;
+    }
+    std::string type;
+    words >> type;
+    if (type != "aij" && type != "baij" && type != "sbaij") {
+      throw InputError(fmt::format("-mat_type: found \"{}\", expected aij, baij or sbaij", type));
+    }
+    options.petsc_matrix = type == "aij"    ? PetscMatrixType::aij
+                           : type == "baij" ? PetscMatrixType::baij
+                                            : PetscMatrixType::sbaij;
+  }
+  return options;
 }
 
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options) {

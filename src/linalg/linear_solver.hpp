@@ -78,6 +78,11 @@ const LinearSolverInfo& find_linear_solver(LinearSolverKind kind);
 /// The names of all, for people: "cg, cholesky or lu".
 std::string linear_solver_names();
 
+/// The options of a call such as "cholmod" or "petsc -ksp_type cg -pc_type gamg -mat_type baij": a name and,
+/// for petsc, options in PETSc's notation, of which -mat_type (aij, baij, sbaij) chooses the storage. Throws
+/// InputError for an unknown name or storage and for options of a solver that takes none.
+LinearSolverOptions read_linear_solver(const std::string& call);
+
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options);
 
 }  // namespace fw::linalg

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
@@ -18,6 +19,9 @@ class Catalog {
   /// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]". Throws
   /// InputError for an unknown name (with the nearest one) or option.
   virtual std::unique_ptr<Integrator> method(const std::string& call) const = 0;
+
+  /// The names of all methods, in the order of the list.
+  virtual std::vector<std::string> method_names() const = 0;
 
   /// The problem of that name. Throws InputError for an unknown name, parameter or value.
   virtual Problem problem(const std::string& name, const ProblemParameters& parameters) const = 0;

@@ -85,6 +85,43 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
   return entry;
 }
 
+/// Throws InputError that names the entry where a call is not one of a method.
+void check_call(const CheckedTable& spec, const std::string& key, std::size_t index, const std::string& call,
+                const Catalog& catalog) {
+  try {
+    catalog.method(call);
+  } catch (const InputError& error) {
+    spec.fail(key, {index}, error.what());
+  }
+}
+
+/// Whether `text` is `pattern`, in which each * stands for any letters.
+bool matches(std::string_view pattern, std::string_view text) {
+  const auto star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == text;
+  if (text.substr(0, star) != pattern.substr(0, star)) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (std::size_t from = star; from <= text.size(); ++from) {
+    if (matches(rest, text.substr(from))) return true;
+  }
+  return false;
+}
+
+/// The names of the catalogue that fit, or the call itself where it is no pattern.
+std::vector<std::string> expand(const CheckedTable& spec, const std::string& key, std::size_t index,
+                                const std::string& call, const Catalog& catalog) {
+  if (call.find('*') == std::string::npos) {
+    check_call(spec, key, index, call, catalog);
+    return {call};
+  }
+  std::vector<std::string> fitting;
+  for (const std::string& name : catalog.method_names()) {
+    if (matches(call, name)) fitting.push_back(name);
+  }
+  if (fitting.empty()) spec.fail(key, {index}, fmt::format("found \"{}\", which no method fits", call));
+  return fitting;
+}
+
 }  // namespace
 
 std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog,
@@ -98,16 +135,30 @@ std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog&
   return problems;
 }
 
+std::vector<std::string> read_method_patterns(const CheckedTable& spec, const Catalog& catalog) {
+  std::vector<std::string> methods;
+  const std::vector<std::string> wanted = spec.strings("methods");
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    for (const std::string& call : expand(spec, "methods", i, wanted[i], catalog)) {
+      if (std::find(methods.begin(), methods.end(), call) == methods.end()) methods.push_back(call);
+    }
+  }
+  const std::vector<std::string> unwanted = spec.strings_or("without", {});
+  for (std::size_t i = 0; i < unwanted.size(); ++i) {
+    for (const std::string& call : expand(spec, "without", i, unwanted[i], catalog)) {
+      if (std::erase(methods, call) == 0) {
+        spec.fail("without", {i}, fmt::format("found \"{}\", which is not among the methods", call));
+      }
+    }
+  }
+  if (methods.empty()) spec.fail("methods", "found no method, expected at least one");
+  return methods;
+}
+
 std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog) {
   std::vector<std::string> methods = spec.strings("methods");
   if (methods.empty()) spec.fail("methods", "found an empty list, expected at least one method");
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    try {
-      catalog.method(methods[i]);
-    } catch (const InputError& error) {
-      spec.fail("methods", {i}, error.what());
-    }
-  }
+  for (std::size_t i = 0; i < methods.size(); ++i) check_call(spec, "methods", i, methods[i], catalog);
   return methods;
 }
 

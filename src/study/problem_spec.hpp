@@ -26,4 +26,8 @@ std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog&
 /// Checks the calls of `methods` and returns them. Throws InputError that names the entry.
 std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog);
 
+/// The same where a call may be a pattern such as "sundials:*" or "*" (every method), in the order of the
+/// list; the calls or patterns of the key `without` are left out again.
+std::vector<std::string> read_method_patterns(const CheckedTable& spec, const Catalog& catalog);
+
 }  // namespace fw::study

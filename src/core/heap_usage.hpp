@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstddef>
+
+namespace fw {
+
+/// Bytes that the program has allocated and not given back, over all threads, foreign libraries included. The
+/// difference of two calls is what was kept between them, if nothing else was running.
+std::size_t heap_usage();
+
+}  // namespace fw
