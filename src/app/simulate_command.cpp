@@ -135,7 +135,8 @@ std::unique_ptr<Integrator> make_method(const SimulateArguments& arguments) {
   catalog::MethodCall call = catalog::parse_method_call(arguments.method);
   if (!arguments.has_petsc) return catalog::make_method(call);
   const std::vector<catalog::OptionInfo>& options = catalog::find_method(call.name).options;
-  if (std::none_of(options.begin(), options.end(), [](const auto& option) { return option.name == "petsc"; })) {
+  if (std::none_of(options.begin(), options.end(),
+                   [](const auto& option) { return option.name == "petsc"; })) {
     throw InputError(fmt::format("--petsc: method \"{}\" takes no options of PETSc", call.name));
   }
   if (!call.options.emplace("petsc", arguments.petsc).second) {

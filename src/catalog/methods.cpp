@@ -272,7 +272,9 @@ const MethodEntry& find_method(const std::string& name) {
                                did_you_mean(name, names)));
 }
 
-std::unique_ptr<Integrator> make_method(const std::string& text) { return make_method(parse_method_call(text)); }
+std::unique_ptr<Integrator> make_method(const std::string& text) {
+  return make_method(parse_method_call(text));
+}
 
 std::unique_ptr<Integrator> make_method(const MethodCall& call) {
   const MethodEntry& entry = find_method(call.name);

@@ -114,8 +114,7 @@ MethodEntry ts_basicsymplectic() {
 }  // namespace
 
 std::vector<MethodEntry> petsc_methods() {
-  return {ts_rk(),   ts_theta(),  ts_bdf(),           ts_arkimex(),
-          ts_rosw(), ts_alpha2(), ts_basicsymplectic()};
+  return {ts_rk(), ts_theta(), ts_bdf(), ts_arkimex(), ts_rosw(), ts_alpha2(), ts_basicsymplectic()};
 }
 
 }  // namespace fw::catalog
