@@ -159,7 +159,9 @@ PetscErrorCode TsEquations::guarded(Body body) {
     return 0;
   } catch (...) {
     exception_ = std::current_exception();
-    return PETSC_ERR_USER;
+    // A symplectic step holds parts of the state that it would not give back after an error: it is let run to
+    // its end, and the exception goes on from there.
+    return form_ == TsForm::hamiltonian ? 0 : PETSC_ERR_USER;
   }
 }
 
@@ -200,6 +202,13 @@ void TsEquations::assemble(double t, ConstVectorRef y, double sigma) {
     values[diagonal_place_.back()] = 0.0;
   }
   for (const int place : diagonal_place_) values[place] += sigma;
+  note(matrix_.coeffs());
+  if (!matrix_.coeffs().allFinite()) {
+    // KLU would fail in the middle of a step, from which PETSc does not recover its memory. The right-hand
+    // side is not finite either, and ends the step.
+    matrix_.coeffs().setZero();
+    for (const int place : diagonal_place_) values[place] = sigma;
+  }
   petsc_matrix_->set_values(matrix_);
 }
 
