@@ -88,6 +88,7 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
 void TsEquations::attach(TS stepper) {
   const Index n = system_.size();
   petsc_check(TSSetApplicationContext(stepper, this));
+  petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
   if (form_ == TsForm::second_order) {
     make_vector(n / 2, state_);
     make_vector(n / 2, velocity_);
@@ -109,7 +110,6 @@ void TsEquations::attach(TS stepper) {
   switch (form_) {
     case TsForm::explicit_form:
       petsc_check(TSSetRHSFunction(stepper, nullptr, explicit_slope, this));
-      petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
       break;
     case TsForm::hamiltonian: {
       const auto half = static_cast<PetscInt>(n / 2);
