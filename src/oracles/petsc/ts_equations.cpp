@@ -88,7 +88,8 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
 void TsEquations::attach(TS stepper) {
   const Index n = system_.size();
   petsc_check(TSSetApplicationContext(stepper, this));
-  petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
+  // A symplectic step would lose memory by the refusal; its state tells by itself.
+  if (form_ != TsForm::hamiltonian) petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
   if (form_ == TsForm::second_order) {
     make_vector(n / 2, state_);
     make_vector(n / 2, velocity_);
