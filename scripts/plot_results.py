@@ -4,7 +4,9 @@
 import sys
 
 import plot_style  # first: it finds a Python with the libraries
+import plot_agreement
 import plot_convergence
+import plot_linear_solver
 import plot_slope_field
 import plot_spiral
 import plot_trajectory
@@ -20,7 +22,8 @@ def draw_simulated(result):
 def choose_drawing(result):
     if result.kind == "simulate":
         return draw_simulated(result)
-    return {"convergence": plot_convergence.draw, "trajectory": plot_trajectory.draw}.get(result.kind)
+    return {"agreement": plot_agreement.draw, "convergence": plot_convergence.draw,
+            "linear_solver": plot_linear_solver.draw, "trajectory": plot_trajectory.draw}.get(result.kind)
 
 
 if __name__ == "__main__":

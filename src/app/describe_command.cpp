@@ -72,7 +72,7 @@ std::string describe_problem(const ProblemEntry& entry) {
   line("equations", problem.description);
   line("unknowns", std::to_string(problem.ivp.system->size()));
   line("interval", fmt::format("[{}, {}] s", problem.ivp.t0, problem.ivp.t1));
-  line("largest |eigenvalue|", fmt::format("{:.6g} 1/s", problem.stiffness));
+  line("largest |eigenvalue|", fmt::format("{:.6g} 1/s", problem.stiffness()));
   line("right-hand side", problem.is_smooth ? "smooth" : "has kinks");
   line("solution", problem.exact ? "closed form" : "certified reference in binary128");
   std::string names;
@@ -148,7 +148,7 @@ std::string problem_json(const ProblemEntry& entry) {
   json.key("description").value(problem.description).key("reference").value(problem.source);
   json.key("size").value(std::int64_t{problem.ivp.system->size()});
   json.key("t0").value(problem.ivp.t0).key("t1").value(problem.ivp.t1);
-  json.key("stiffness").value(problem.stiffness).key("smooth").value(problem.is_smooth);
+  json.key("stiffness").value(problem.stiffness()).key("smooth").value(problem.is_smooth);
   json.key("exact_solution").value(static_cast<bool>(problem.exact));
   json.key("invariants").begin_array();
   for (const Invariant& invariant : problem.invariants) json.value(invariant.name);

@@ -61,10 +61,10 @@ class Library {
     PetscErrorCode code = SlepcInitialize(&count, &arguments, nullptr, nullptr);
     if (code == 0) code = PetscPushErrorHandler(keep_message, nullptr);
     // Types are registered now, while PETSc's own options are the ones that are read.
-    if (code == 0) code = PCInitializePackage();
-    if (code == 0) code = KSPInitializePackage();
-    if (code == 0) code = SNESInitializePackage();
-    if (code == 0) code = TSInitializePackage();
+    for (auto* register_types :
+         {PCInitializePackage, KSPInitializePackage, SNESInitializePackage, TSInitializePackage}) {
+      if (code == 0) code = register_types();
+    }
     if (code != 0) throw SystemError(fmt::format("PETSc cannot start: error {}", static_cast<int>(code)));
   }
   ~Library() {

@@ -125,7 +125,7 @@ Problem kepler(const ProblemParameters& given) {
     problem.known_values = {{100.0, 0, "-0.1041832044341806047338596629"},
                             {100.0, 1, "-0.6947417155679505993188593704"}};
   }
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -158,7 +158,7 @@ Problem henon_heiles(const ProblemParameters& given) {
                           {100.0, 1, "0.67901692177202164213"},
                           {100.0, 2, "0.038450928951859834502"},
                           {100.0, 3, "0.048594831553003642243"}};
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -203,7 +203,7 @@ Problem pleiades(const ProblemParameters& given) {
                           "5.22508184345654",    "-2.590612434977470", "1.198213693392275",
                           "-0.242968234493582",  "1.091449240428980"};
   for (Index i = 0; i < 14; ++i) problem.known_values.push_back({3.0, i, digits[i]});
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

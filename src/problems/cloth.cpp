@@ -84,7 +84,7 @@ Problem cloth(const ProblemParameters& given) {
                              return system->energies(y.head(3 * n), y.tail(3 * n)).total();
                            }}};
   }
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

@@ -76,7 +76,7 @@ Problem fermi_pasta_ulam(const ProblemParameters& given) {
         {10.0, 0, "0.75633242161029199"},
         {10.0, 1, "0.71735962155453710"}};
   }
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

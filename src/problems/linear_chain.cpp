@@ -86,8 +86,8 @@ Problem linear_chain(const ProblemParameters& given) {
          for (Index i = 1; i < n; ++i) springs += (y[i] - y[i - 1]) * (y[i] - y[i - 1]);
          return 0.5 * (m * y.tail(n).squaredNorm() + k * springs);
        }}};
-  problem.stiffness =
-      2.0 * std::sqrt(stiffness.binary() / mass.binary()) * std::sin(n * std::numbers::pi / (2.0 * (n + 1)));
+  problem.stiffness = [radius = 2.0 * std::sqrt(stiffness.binary() / mass.binary()) *
+                                std::sin(n * std::numbers::pi / (2.0 * (n + 1)))] { return radius; };
   problem.parameters = parameters.text();
   return problem;
 }

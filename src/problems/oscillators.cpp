@@ -70,7 +70,7 @@ Problem linear_oscillator(const Parameter& mass, const Parameter& stiffness, con
   };
   Matrix J(2, 2);
   J << 0.0, 1.0, -stiffness.binary() / mass.binary(), -damping.binary() / mass.binary();
-  problem.stiffness = J.eigenvalues().cwiseAbs().maxCoeff();
+  problem.stiffness = [radius = J.eigenvalues().cwiseAbs().maxCoeff()] { return radius; };
   return problem;
 }
 
@@ -148,7 +148,7 @@ Problem driven_duffing(const ProblemParameters& given) {
                  {},
                  {}};
   set_initial_state(problem.ivp, {Float128(1) / 2, Float128(-1) / 4});
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

@@ -35,7 +35,7 @@ struct Problem {
   std::vector<Invariant> invariants;
   std::vector<KnownValue> known_values;
   /// The largest |λ| of J along the solution [1/s]: tells how stiff it is on its interval.
-  double stiffness = 0.0;
+  std::function<double()> stiffness;
   bool is_smooth = true;  ///< the right-hand side is smooth along the solution (no kinks)
   /// The parameters that were in force, as "name=value" text, for provenance and hashes.
   std::string parameters;

@@ -58,7 +58,7 @@ Problem spring_pendulum(const ProblemParameters& given) {
        }},
       {"angular_momentum_z", "kg*m^2/s",
        [m](double, ConstVectorRef y) { return m * (y[0] * y[4] - y[1] * y[3]); }}};
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

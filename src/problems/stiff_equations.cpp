@@ -49,7 +49,7 @@ Problem van_der_pol(const ProblemParameters& given) {
   problem.source = "Hairer, Wanner 1996, IV.1 and VI.1 (with eps = 1e-6)";
   problem.ivp = {std::make_shared<FunctorSystem<VanDerPol>>(2, VanDerPol{epsilon}), 0.0, 2.0, {}, {}};
   set_initial_state(problem.ivp, {2, 0});
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -72,7 +72,7 @@ Problem robertson(const ProblemParameters& given) {
   problem.invariants = {{"total_concentration", "1", [](double, ConstVectorRef y) { return y.sum(); }}};
   // The example prints 9.185e-06 for y2 at its tolerance of 1e-4; the value is 9.18553e-06.
   problem.known_values = {{40.0, 0, "0.7158"}, {40.0, 1, "0.0000092"}, {40.0, 2, "0.2842"}};
-  problem.stiffness = spectral_radius_along_solution(problem.ivp);
+  problem.stiffness = [ivp = problem.ivp] { return spectral_radius_along_solution(ivp); };
   problem.parameters = parameters.text();
   return problem;
 }

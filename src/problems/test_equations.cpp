@@ -54,7 +54,7 @@ Problem dahlquist(const ProblemParameters& given) {
   problem.ivp = {std::make_shared<FunctorSystem<ScalarLinear>>(1, ScalarLinear{lambda}), 0.0, 2.3, {}, {}};
   set_initial_state(problem.ivp, {1});
   problem.exact = [lambda](const Float128& t) { return std::vector<Float128>{exp(lambda.decimal() * t)}; };
-  problem.stiffness = std::abs(lambda.binary());
+  problem.stiffness = [radius = std::abs(lambda.binary())] { return radius; };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -81,7 +81,7 @@ Problem dahlquist_complex(const ProblemParameters& given) {
     const Float128 growth = exp(real.decimal() * t), angle = imaginary.decimal() * t;
     return std::vector<Float128>{growth * cos(angle), growth * sin(angle)};
   };
-  problem.stiffness = std::hypot(real.binary(), imaginary.binary());
+  problem.stiffness = [radius = std::hypot(real.binary(), imaginary.binary())] { return radius; };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -107,7 +107,7 @@ Problem rotation(const ProblemParameters& given) {
   set_initial_state(problem.ivp, {1, 0});
   problem.exact = [](const Float128& t) { return std::vector<Float128>{cos(t), sin(t)}; };
   problem.invariants = {{"squared_radius", "1", [](double, ConstVectorRef y) { return y.squaredNorm(); }}};
-  problem.stiffness = 1.0;
+  problem.stiffness = [radius = 1.0] { return radius; };
   problem.parameters = parameters.text();
   return problem;
 }
@@ -131,7 +131,7 @@ Problem prothero_robinson(const ProblemParameters& given) {
       std::make_shared<FunctorSystem<ProtheroRobinson>>(1, ProtheroRobinson{lambda}), 0.0, 1.3, {}, {}};
   set_initial_state(problem.ivp, {1});
   problem.exact = [](const Float128& t) { return std::vector<Float128>{cos(t)}; };
-  problem.stiffness = std::abs(lambda.binary());
+  problem.stiffness = [radius = std::abs(lambda.binary())] { return radius; };
   problem.parameters = parameters.text();
   return problem;
 }

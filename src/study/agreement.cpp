@@ -46,6 +46,7 @@ struct Participant {
 /// One row of the matrix.
 struct Row {
   std::string name;
+  std::string family;
   analysis::ConvergedRun run;
   bool compared = false;
 };
@@ -101,6 +102,7 @@ class AgreementCase {
     }
     Row row;
     row.name = problem_.problem.exact ? "exact" : "certified";
+    row.family = "reference";
     row.run.state = reference.states.front().rounded();
     set_scale(row.run.state);
     row.run.error_estimate = reference.states.front().largest_error() / smallest_scale();
@@ -126,6 +128,7 @@ class AgreementCase {
                                   .is_interrupted = [this] { return context_.is_interrupted(); }};
     Row row;
     row.name = participant.call;
+    row.family = info.family;
     try {
       if (!has_scale_) set_scale(first_solution(*participant.integrator, goal));
       row.run = refined(*participant.integrator, goal);
@@ -228,12 +231,13 @@ class AgreementCase {
   }
 
   void add_columns(CaseResult& result) const {
-    std::vector<std::string> names, status;
+    std::vector<std::string> names, families, status;
     std::vector<double> steps, tolerances, estimates, seconds, states;
     std::vector<std::int64_t> compared, evaluations;
     const Index size = ivp().system->size();
     for (const Row& row : rows_) {
       names.push_back(row.name);
+      families.push_back(row.family);
       status.push_back(std::string(to_string(row.run.status.code)));
       steps.push_back(row.run.step);
       tolerances.push_back(row.run.tolerance);
@@ -255,6 +259,7 @@ class AgreementCase {
                   scale_.position, scale_.velocity);
     result.columns = {
         {"method", "", names, {}, {}},
+        {"family", "", families, {}, {}},
         {"step", "s", steps, {}, {}},
         {"tolerance", "1", tolerances, {}, {}},
         {"error_estimate", "1", estimates, {}, {{"norm", relative}}},

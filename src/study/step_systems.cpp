@@ -35,7 +35,8 @@ void StepSystems::assemble() {
   const Index n = right_hand_side_.size();
   const auto x = state_.head(n), v = state_.tail(n);
   const double t = time_ + step_;
-  matrix_ = &assembly_.assemble_symmetric(t, x, v, step_, TangentModel::psd_projection);
+  const TangentModel model = system_.has_springs() ? TangentModel::psd_projection : TangentModel::exact;
+  matrix_ = &assembly_.assemble_symmetric(t, x, v, step_, model);
   system_.force(t, x, v, right_hand_side_);
   system_.tangent_product(t, x, v, v, zero_, product_);
   right_hand_side_ = step_ * (right_hand_side_ + step_ * product_);

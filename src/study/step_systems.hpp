@@ -11,7 +11,8 @@ namespace fw::study {
 /// The linear systems A δ = b of the linearised implicit Euler method along its own trajectory,
 /// A = ½(S + Sᵀ) with S = M − h D − h² K on the moving degrees of freedom and b = h (f + h K v), one step
 /// after the other [Zachmann 2011, S26]. Springs under compression enter A without their negative part
-/// (TangentModel::psd_projection), so that A is positive definite at every step.
+/// (TangentModel::psd_projection), so that A is positive definite at every step; systems without springs have
+/// the exact one.
 class StepSystems {
  public:
   /// At the initial state. Throws InputError where the problem is no M q̈ = f.

@@ -37,6 +37,42 @@ scene = "SCENES/harmonic_oscillator.toml"
 label = "scene"
 t_end = 1.0
 """,
+    # with and without a reference, from a scene, methods that cannot run, fail or stay too inaccurate
+    "agreement": """
+kind = "agreement"
+title = "Agreement"
+methods = ["rk4", "gsl:*", "explicit_euler", "velocity_verlet"]
+without = ["gsl:rk1imp"]
+
+[agreement]
+error = 1e-6
+most_steps = 64
+
+[[problem]]
+name = "harmonic_oscillator"
+
+[[problem]]
+name = "dahlquist"
+
+[[problem]]
+scene = "SCENES/damped_network.toml"
+t_end = 0.1
+""",
+    # direct, iterative, and one that does not get there
+    "linear_solver": """
+kind = "linear_solver"
+title = "Linear solvers"
+solvers = ["cg", "cholmod", "petsc -ksp_type richardson -pc_type none -ksp_max_it 2"]
+
+[linear_solver]
+steps = [0.01]
+repetitions = 2
+sequence = 3
+
+[[problem]]
+scene = "SCENES/damped_network.toml"
+t_end = 0.1
+""",
     # with and without a closed form, with and without invariants, with one and with a fixed step, from a scene
     "trajectories": """
 kind = "simulate"

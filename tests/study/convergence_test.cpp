@@ -6,30 +6,12 @@
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "memory_archive.hpp"
+#include "seeded_catalog.hpp"
 #include "seeded_schemes.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {
 namespace {
-
-using Seeds = std::map<std::string, std::function<std::unique_ptr<Integrator>()>>;
-
-/// The built-in catalogue and schemes with seeded bugs.
-class SeededCatalog final : public Catalog {
- public:
-  explicit SeededCatalog(Seeds seeds) : seeds_(std::move(seeds)) {}
-  std::unique_ptr<Integrator> method(const std::string& call) const override {
-    const auto seed = seeds_.find(call);
-    return seed != seeds_.end() ? seed->second() : builtin_.method(call);
-  }
-  Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
-    return builtin_.problem(name, parameters);
-  }
-
- private:
-  catalog::BuiltinCatalog builtin_;
-  Seeds seeds_;
-};
 
 Vector force(const SecondOrderSystem& system, double t, const Vector& q, const Vector& v) {
   Vector f(q.size());

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "catalog/builtin_catalog.hpp"
+
+namespace fw::study {
+
+using Seeds = std::map<std::string, std::function<std::unique_ptr<Integrator>()>>;
+
+/// The built-in catalogue and schemes with seeded bugs.
+class SeededCatalog final : public Catalog {
+ public:
+  explicit SeededCatalog(Seeds seeds) : seeds_(std::move(seeds)) {}
+  std::unique_ptr<Integrator> method(const std::string& call) const override {
+    const auto seed = seeds_.find(call);
+    return seed != seeds_.end() ? seed->second() : builtin_.method(call);
+  }
+  std::vector<std::string> method_names() const override {
+    std::vector<std::string> names = builtin_.method_names();
+    for (const auto& [name, make] : seeds_) names.push_back(name);
+    return names;
+  }
+  Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
+    return builtin_.problem(name, parameters);
+  }
+
+ private:
+  catalog::BuiltinCatalog builtin_;
+  Seeds seeds_;
+};
+
+}  // namespace fw::study
