@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -23,9 +24,9 @@ namespace fw::app {
 namespace {
 
 struct SimulateArguments {
-  std::string scene, method, output;
+  std::string scene, method, output, petsc;
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0;
-  bool has_step = false, has_relative = false, has_absolute = false, xdmf = false;
+  bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
   std::int64_t frames = 101;
 };
 
@@ -129,8 +130,23 @@ void print_summary(const std::string& output, const Solution& solution, const st
   }
 }
 
+/// The method with --petsc as its option of that name.
+std::unique_ptr<Integrator> make_method(const SimulateArguments& arguments) {
+  catalog::MethodCall call = catalog::parse_method_call(arguments.method);
+  if (!arguments.has_petsc) return catalog::make_method(call);
+  const std::vector<catalog::OptionInfo>& options = catalog::find_method(call.name).options;
+  if (std::none_of(options.begin(), options.end(),
+                   [](const auto& option) { return option.name == "petsc"; })) {
+    throw InputError(fmt::format("--petsc: method \"{}\" takes no options of PETSc", call.name));
+  }
+  if (!call.options.emplace("petsc", arguments.petsc).second) {
+    throw InputError("found --petsc and the option petsc of --method, expected one of them");
+  }
+  return catalog::make_method(call);
+}
+
 int simulate(SimulateArguments arguments, const std::string& command_line) {
-  const std::unique_ptr<Integrator> integrator = catalog::make_method(arguments.method);
+  const std::unique_ptr<Integrator> integrator = make_method(arguments);
   const StepControl control = step_control(arguments, integrator->info());
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
     throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
@@ -210,6 +226,11 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::Option* absolute =
       command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")
           ->type_name("A");
+  CLI::Option* petsc =
+      command
+          ->add_option("--petsc", arguments->petsc,
+                       "Options for a petsc: method in PETSc's notation, as \"-ksp_type cg -pc_type gamg\"")
+          ->type_name("TEXT");
   command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")
       ->required()
       ->type_name("T");
@@ -219,8 +240,9 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
       ->type_name("FILE.h5");
   command->add_flag("--xdmf", arguments->xdmf, "Also write FILE.xdmf, which ParaView opens");
-  command->callback([arguments, step, relative, absolute, &action, command_line] {
+  command->callback([arguments, step, relative, absolute, petsc, &action, command_line] {
     arguments->has_step = step->count() > 0;
+    arguments->has_petsc = petsc->count() > 0;
     arguments->has_relative = relative->count() > 0;
     arguments->has_absolute = absolute->count() > 0;
     action = [arguments, command_line] { return simulate(*arguments, command_line); };

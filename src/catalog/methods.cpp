@@ -273,7 +273,10 @@ const MethodEntry& find_method(const std::string& name) {
 }
 
 std::unique_ptr<Integrator> make_method(const std::string& text) {
-  const MethodCall call = parse_method_call(text);
+  return make_method(parse_method_call(text));
+}
+
+std::unique_ptr<Integrator> make_method(const MethodCall& call) {
   const MethodEntry& entry = find_method(call.name);
   for (const auto& [name, value] : call.options) {
     const bool known = std::any_of(entry.options.begin(), entry.options.end(),

@@ -59,5 +59,6 @@ const MethodEntry& find_method(const std::string& name);
 
 /// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]".
 std::unique_ptr<Integrator> make_method(const std::string& call);
+std::unique_ptr<Integrator> make_method(const MethodCall& call);
 
 }  // namespace fw::catalog

@@ -4,6 +4,8 @@
 #include <mpi.h>
 #include <slepcsys.h>
 
+#include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -100,6 +102,15 @@ void check_values(PetscOptions options, const std::vector<std::string>& names) {
       void (*found)(void) = nullptr;
       petsc_check(PetscFunctionListFind(list, value, &found));
       if (found == nullptr) {
+        throw PetscFailure(PETSC_ERR_ARG_UNKNOWN_TYPE, fmt::format("{}: unknown type \"{}\"", name, value));
+      }
+    }
+    if (ends_with(name, "ts_adapt_type")) {
+      char value[PETSC_MAX_PATH_LEN] = "";
+      petsc_check(PetscOptionsGetString(options, nullptr, name.c_str(), value, sizeof(value), nullptr));
+      const std::string_view types[] = {TSADAPTNONE, TSADAPTBASIC, TSADAPTDSP,
+                                        TSADAPTCFL,  TSADAPTGLEE,  TSADAPTHISTORY};
+      if (std::find(std::begin(types), std::end(types), value) == std::end(types)) {
         throw PetscFailure(PETSC_ERR_ARG_UNKNOWN_TYPE, fmt::format("{}: unknown type \"{}\"", name, value));
       }
     }

@@ -89,6 +89,12 @@ INSTANTIATE_TEST_SUITE_P(
                         "-ksp_type preonly -pc_type cholesky -pc_factor_mat_solver_type cholmod",
                         "-ksp_type preonly -pc_type cholesky -pc_factor_mat_solver_type mumps")));
 
+// Each test is a process of its own under ctest: here types are looked up before any object has been made.
+TEST(PetscSolver, KnowsTheTypesFromTheStart) {
+  EXPECT_NO_THROW(make_linear_solver(petsc("-ksp_type gmres -pc_type gamg")));
+  EXPECT_THROW(make_linear_solver(petsc("-ksp_type gmress")), InputError);
+}
+
 TEST(PetscSolver, TakesNewValuesInTheSamePatternWithEveryStorage) {
   const ClothStep step = cloth_step(6, 2000.0, 0.02);
   for (const PetscMatrixType storage : storages) {

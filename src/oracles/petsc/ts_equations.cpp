@@ -88,11 +88,11 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
 void TsEquations::attach(TS stepper) {
   const Index n = system_.size();
   petsc_check(TSSetApplicationContext(stepper, this));
+  // A symplectic step would lose memory by the refusal; its state tells by itself.
+  if (form_ != TsForm::hamiltonian) petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
   if (form_ == TsForm::second_order) {
     make_vector(n / 2, state_);
     make_vector(n / 2, velocity_);
-    petsc_check(VecDuplicate(state_, dense_.out()));
-    petsc_check(VecDuplicate(state_, dense_velocity_.out()));
     *WritableVectorView(state_) = y0_.head(n / 2);
     *WritableVectorView(velocity_) = y0_.tail(n / 2);
     petsc_check(TSSetI2Function(stepper, nullptr, second_order_residual, this));
@@ -102,7 +102,6 @@ void TsEquations::attach(TS stepper) {
     return;
   }
   make_vector(form_ == TsForm::autonomous ? n + 1 : n, state_);
-  petsc_check(VecDuplicate(state_, dense_.out()));
   {
     const WritableVectorView state(state_);
     (*state).head(n) = y0_;
@@ -112,7 +111,6 @@ void TsEquations::attach(TS stepper) {
   switch (form_) {
     case TsForm::explicit_form:
       petsc_check(TSSetRHSFunction(stepper, nullptr, explicit_slope, this));
-      petsc_check(TSSetFunctionDomainError(stepper, state_is_finite));
       break;
     case TsForm::hamiltonian: {
       const auto half = static_cast<PetscInt>(n / 2);
@@ -142,11 +140,6 @@ void TsEquations::copy_state(VectorRef y) const {
   }
 }
 
-void TsEquations::interpolate(TS stepper, double t, VectorRef y) {
-  petsc_check(TSInterpolate(stepper, t, dense_));
-  y = (*VectorView(dense_)).head(y.size());
-}
-
 void TsEquations::rethrow() {
   if (exception_) std::rethrow_exception(std::exchange(exception_, nullptr));
 }
@@ -167,7 +160,9 @@ PetscErrorCode TsEquations::guarded(Body body) {
     return 0;
   } catch (...) {
     exception_ = std::current_exception();
-    return PETSC_ERR_USER;
+    // A symplectic step holds parts of the state that it would not give back after an error: it is let run to
+    // its end, and the exception goes on from there.
+    return form_ == TsForm::hamiltonian ? 0 : PETSC_ERR_USER;
   }
 }
 
@@ -208,6 +203,13 @@ void TsEquations::assemble(double t, ConstVectorRef y, double sigma) {
     values[diagonal_place_.back()] = 0.0;
   }
   for (const int place : diagonal_place_) values[place] += sigma;
+  note(matrix_.coeffs());
+  if (!matrix_.coeffs().allFinite()) {
+    // KLU would fail in the middle of a step, from which PETSc does not recover its memory. The right-hand
+    // side is not finite either, and ends the step.
+    matrix_.coeffs().setZero();
+    for (const int place : diagonal_place_) values[place] = sigma;
+  }
   petsc_matrix_->set_values(matrix_);
 }
 

@@ -27,9 +27,8 @@ class TsEquations {
   /// Hands functions, matrices and the initial state to `stepper`, which keeps pointers to this object.
   void attach(TS stepper);
 
-  /// y as the stepper has it, and as it interpolates.
+  /// y as the stepper has it.
   void copy_state(VectorRef y) const;
-  void interpolate(TS stepper, double t, VectorRef y);
 
   /// Throws what a callback has thrown since the last time.
   void rethrow();
@@ -69,7 +68,7 @@ class TsEquations {
   std::vector<int> diagonal_place_;
   std::vector<int> time_place_;  ///< of the column ∂/∂t in `matrix_`, autonomous form
   std::unique_ptr<linalg::PetscMatrix> petsc_matrix_;
-  linalg::PetscVec state_, velocity_, dense_, dense_velocity_;
+  linalg::PetscVec state_, velocity_;
   linalg::PetscIndexSet positions_, momenta_;
   Vector time_derivative_, other_slope_, shifted_;
   std::exception_ptr exception_;

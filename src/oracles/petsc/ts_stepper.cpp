@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "core/error.hpp"
 #include "integrators/initial_step.hpp"
@@ -34,7 +35,6 @@ bool is_close(double a, double b) {
 
 TsStepper::TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work)
     : name_("TS " + method.type),
-      has_dense_output_(method.has_dense_output),
       is_implicit_(method.form != TsForm::explicit_form && method.form != TsForm::hamiltonian),
       is_adaptive_(std::holds_alternative<AdaptiveStep>(control)),
       has_monitor_(method.petsc_options.find("monitor") != std::string::npos),
@@ -143,6 +143,11 @@ Status TsStepper::advance(double limit, double& t, VectorRef y) {
       reached = limit;
       petsc_check(TSSetTime(stepper_, limit));
     }
+    if (is_adaptive_ && reached - t_ < 1e-12 * std::max(std::abs(t_), step) && equations_.take_non_finite()) {
+      return {StatusCode::non_finite,
+              fmt::format("{} at t = {:.6g}: the right-hand side is not finite, however small the step",
+                          name_, t_)};
+    }
     if (has_monitor_) {
       PetscInt count = 0;
       Vec state = nullptr;
@@ -191,9 +196,8 @@ Status TsStepper::failure(TSConvergedReason reason, double t) {
   return {code, message};
 }
 
-void TsStepper::interpolate(double t, VectorRef out) {
-  const PetscSession session(&text_);
-  equations_.interpolate(stepper_, t, out);
+void TsStepper::interpolate(double, VectorRef) {
+  throw std::logic_error("no dense output of its own");
 }
 
 void TsStepper::collect_work(Work& work) const {

@@ -13,7 +13,6 @@ struct TsMethod {
   std::string type;                     ///< TSType
   TsForm form = TsForm::explicit_form;  ///< of the equations
   std::function<void(TS)> configure{};  ///< sets what belongs to the type
-  bool has_dense_output = false;        ///< TSInterpolate is at least as good as a cubic Hermite polynomial
   int order = 1;                        ///< for the first step
   std::string petsc_options{};          ///< of the user, in PETSc's notation
 };
@@ -26,7 +25,8 @@ class TsStepper final : public ForeignStepper {
   TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work);
 
   Status advance(double limit, double& t, VectorRef y) override;
-  bool has_dense_output() const override { return has_dense_output_; }
+  /// TSInterpolate is of order one for many types: the loop's Hermite polynomials serve all of them.
+  bool has_dense_output() const override { return false; }
   void interpolate(double t, VectorRef out) override;
   void collect_work(Work& work) const override;
 
@@ -36,7 +36,6 @@ class TsStepper final : public ForeignStepper {
   Status failure(TSConvergedReason reason, double t);
 
   std::string name_;
-  bool has_dense_output_;
   bool is_implicit_;
   bool is_adaptive_;
   bool is_first_ = true;
