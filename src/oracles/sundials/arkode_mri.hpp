@@ -13,8 +13,9 @@ struct MriOptions {
   std::string coupling = "mri_gark_erk45a";  ///< of `arkode_couplings`
   bool inner_is_implicit = false;            ///< diagonally implicit table with Newton and KLU
   std::string inner_table{};                 ///< of ARKODE's; empty: of the coupling's order or more
-  int inner_steps = 20;                      ///< constant inner steps per step; 0: chosen by inner_tolerance
-  double inner_tolerance = 1e-10;            ///< relative, and absolute as a fraction of the state's size
+  /// Constant inner steps per step, at least one between two stages; 0: chosen by inner_tolerance.
+  int inner_steps = 20;
+  double inner_tolerance = 1e-10;  ///< relative, and absolute as a fraction of the state's size
 };
 
 /// MRIStep, ARKODE's multirate infinitesimal methods [Sandu 2019; Reynolds et al. 2023]: constant steps with
