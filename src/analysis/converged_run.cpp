@@ -94,7 +94,8 @@ ConvergedRun run_to_accuracy(const Integrator& integrator, const Ivp& ivp,
       if (!refinement.refine(FixedStep{.step = step, .allow_short_last_step = false}, expected_ratio)) break;
     }
   } else {
-    const double expected_ratio = 10.0;  // a tenth of the tolerance promises a tenth of the error, not less
+    // With tolerances on each step the error falls like tolerance^(p/(p + 1)): by √10 at least, with order 1.
+    const double expected_ratio = std::sqrt(10.0);
     // The last tolerance is reached exactly, rounding of the powers aside.
     for (double tolerance = goal.first_tolerance; tolerance >= 0.9 * goal.smallest_tolerance;
          tolerance /= 10.0) {

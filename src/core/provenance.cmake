@@ -12,10 +12,19 @@ if(FEDERWERK_NATIVE)
 endif()
 string(STRIP "${provenance_flags}" provenance_flags)
 
+# SuiteSparse tells its versions in headers only.
+set(cholmod_version "")
+foreach(part MAIN SUB SUBSUB)
+  file(STRINGS ${SUITESPARSE_INCLUDE_DIR}/cholmod_core.h line REGEX "define CHOLMOD_${part}_VERSION [0-9]+")
+  string(REGEX MATCH "[0-9]+$" number "${line}")
+  list(APPEND cholmod_version ${number})
+endforeach()
+list(JOIN cholmod_version "." cholmod_version)
+
 string(JOIN " " provenance_libraries
-  "Boost=${Boost_VERSION_STRING}" "CLI11=${CLI11_VERSION}" "Eigen=${Eigen3_VERSION}" "fmt=${fmt_VERSION}"
+  "Boost=${Boost_VERSION_STRING}" "CHOLMOD=${cholmod_version}" "CLI11=${CLI11_VERSION}" "Eigen=${Eigen3_VERSION}" "fmt=${fmt_VERSION}"
   "GSL=${GSL_VERSION}" "HDF5=${HDF5_VERSION}" "OpenSSL=${OPENSSL_VERSION}" "PETSc=${PETSC_VERSION}"
-  "SUNDIALS=${SUNDIALS_VERSION}" "toml++=${TOMLPP_VERSION}")
+  "SLEPc=${SLEPC_VERSION}" "SUNDIALS=${SUNDIALS_VERSION}" "toml++=${TOMLPP_VERSION}")
 
 set(provenance_dir ${CMAKE_CURRENT_BINARY_DIR}/generated)
 add_custom_target(provenance

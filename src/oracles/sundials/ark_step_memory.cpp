@@ -13,9 +13,10 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
       implicit_part_(std::move(implicit_part)),
       report_(report),
       work_(work),
-      memory_(made(ARKStepCreate(explicit_part_ ? explicit_function : nullptr,
-                                 implicit_part_ ? implicit_function : nullptr, t0, y0, context),
-                   "ARKStepCreate")) {
+      memory_(
+          own<ArkStepPointer>(ARKStepCreate(explicit_part_ ? explicit_function : nullptr,
+                                            implicit_part_ ? implicit_function : nullptr, t0, y0, context),
+                              "ARKStepCreate")) {
   void* memory = memory_.get();
   require(ARKStepSetErrHandlerFn(memory, keep_message, &report_), "ARKStepSetErrHandlerFn");
   require(ARKStepSetUserData(memory, this), "ARKStepSetUserData");
@@ -125,7 +126,7 @@ int ArkStepMemory::jacobian_function(sunrealtype t, N_Vector y, N_Vector, SUNMat
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.implicit_part_->jacobian(t, view(y, run.size_));
     ++run.work_.jacobian_evaluations;
-    copy_matrix(jacobian, J);
+    SparseDirectSolver::copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

@@ -61,7 +61,7 @@ class ArkStepMemory {
   RunReport& report_;
   Work& work_;
   double stage_tolerance_ = 0.0, scale_ = 1.0;  ///< of constant steps
-  std::optional<KluSolver> linear_solver_;
+  std::optional<SparseDirectSolver> linear_solver_;
   ArkStepPointer memory_;
 };
 

@@ -29,8 +29,8 @@ class ArkodeStepper final : public ForeignStepper {
         state_(ivp.y0),
         dense_(ivp.y0.size()),
         context_(make_context()),
-        state_vector_(wrap_entries(state_, context_.get())),
-        dense_vector_(wrap_entries(dense_, context_.get())),
+        state_vector_(wrap_eigen_vector(state_, context_.get())),
+        dense_vector_(wrap_eigen_vector(dense_, context_.get())),
         ark_(ivp.t0, state_vector_.get(), explicit_part(tables, *ivp.system),
              implicit_part(tables, *ivp.system), tables, report_, work, context_.get()) {
     const StageAccuracy accuracy{options.newton_tolerance, options.newton_coefficient};

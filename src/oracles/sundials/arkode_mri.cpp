@@ -52,14 +52,14 @@ class MriStepper final : public ForeignStepper {
         dense_(ivp.y0.size()),
         slow_{make_soft_right_hand_part(*ivp.system->second_order()), ivp.y0.size(), report_, work},
         context_(make_context()),
-        state_vector_(wrap_entries(state_, context_.get())),
-        dense_vector_(wrap_entries(dense_, context_.get())),
+        state_vector_(wrap_eigen_vector(state_, context_.get())),
+        dense_vector_(wrap_eigen_vector(dense_, context_.get())),
         inner_(ivp.t0, state_vector_.get(), fast_part(ivp, !options.inner_is_implicit),
                fast_part(ivp, options.inner_is_implicit), tables, report_, work, context_.get()),
         inner_stepper_(inner_stepper(inner_.get())),
-        memory_(made(MRIStepCreate(evaluate_slow_part, nullptr, ivp.t0, state_vector_.get(),
-                                   inner_stepper_.get(), context_.get()),
-                     "MRIStepCreate")) {
+        memory_(own<MriStepPointer>(MRIStepCreate(evaluate_slow_part, nullptr, ivp.t0, state_vector_.get(),
+                                                  inner_stepper_.get(), context_.get()),
+                                    "MRIStepCreate")) {
     const double scale = std::max(ivp.y0.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
     if (inner_steps_ > 0) {
       inner_.take_constant_steps(scale, {});

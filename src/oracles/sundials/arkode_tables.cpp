@@ -120,21 +120,21 @@ namespace detail {
 namespace {
 
 ButcherTablePointer load(ARKODE_ERKTableID id) {
-  return ButcherTablePointer(made(ARKodeButcherTable_LoadERK(id), "ARKodeButcherTable_LoadERK"));
+  return own<ButcherTablePointer>(ARKodeButcherTable_LoadERK(id), "ARKodeButcherTable_LoadERK");
 }
 ButcherTablePointer load(ARKODE_DIRKTableID id) {
-  return ButcherTablePointer(made(ARKodeButcherTable_LoadDIRK(id), "ARKodeButcherTable_LoadDIRK"));
+  return own<ButcherTablePointer>(ARKodeButcherTable_LoadDIRK(id), "ARKodeButcherTable_LoadDIRK");
 }
 
 }  // namespace
 
 ButcherTablePointer make_table(const schemes::ButcherTableau& tableau, int order, int embedded_order) {
   schemes::TableauValues<double> values = schemes::values<double>(tableau);
-  return ButcherTablePointer(
-      made(ARKodeButcherTable_Create(values.stages, order, embedded_order, values.c.data(), values.a.data(),
-                                     values.b.data(),
-                                     values.b_embedded.empty() ? nullptr : values.b_embedded.data()),
-           "ARKodeButcherTable_Create"));
+  return own<ButcherTablePointer>(
+      ARKodeButcherTable_Create(values.stages, order, embedded_order, values.c.data(), values.a.data(),
+                                values.b.data(),
+                                values.b_embedded.empty() ? nullptr : values.b_embedded.data()),
+      "ARKodeButcherTable_Create");
 }
 
 ArkodeTables explicit_tables(const schemes::ButcherTableau& tableau) {
@@ -201,8 +201,8 @@ ArkodeTables built_in_additive_tables(const std::string& name) {
 }
 
 CouplingPointer built_in_coupling(const std::string& name) {
-  return CouplingPointer(
-      made(MRIStepCoupling_LoadTable(find(coupling_list(), "coupling", name)), "MRIStepCoupling_LoadTable"));
+  return own<CouplingPointer>(MRIStepCoupling_LoadTable(find(coupling_list(), "coupling", name)),
+                              "MRIStepCoupling_LoadTable");
 }
 
 }  // namespace detail

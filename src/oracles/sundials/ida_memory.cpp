@@ -17,12 +17,12 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
       dense_(y0.size()),
       kinds_(Vector::Ones(y0.size())),
       context_(make_context()),
-      state_vector_(wrap_entries(state_, context_.get())),
-      slope_vector_(wrap_entries(slope_, context_.get())),
-      dense_vector_(wrap_entries(dense_, context_.get())),
-      kinds_vector_(wrap_entries(kinds_, context_.get())),
+      state_vector_(wrap_eigen_vector(state_, context_.get())),
+      slope_vector_(wrap_eigen_vector(slope_, context_.get())),
+      dense_vector_(wrap_eigen_vector(dense_, context_.get())),
+      kinds_vector_(wrap_eigen_vector(kinds_, context_.get())),
       linear_solver_(form_->pattern(), state_vector_.get(), context_.get()),
-      memory_(made(IDACreate(context_.get()), "IDACreate")) {
+      memory_(own<IdaPointer>(IDACreate(context_.get()), "IDACreate")) {
   void* memory = memory_.get();
   require(IDASetErrHandlerFn(memory, keep_message, &report_), "IDASetErrHandlerFn");
   require(IDAInit(memory, residual_function, t0, state_vector_.get(), slope_vector_.get()), "IDAInit");
@@ -131,7 +131,7 @@ int IdaMemory::jacobian_function(sunrealtype t, sunrealtype cj, N_Vector y, N_Ve
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.form_->jacobian(t, cj, view(y, run.form_->size()));
     ++run.work_.jacobian_evaluations;
-    copy_matrix(jacobian, J);
+    SparseDirectSolver::copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

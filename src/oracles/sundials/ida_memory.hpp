@@ -57,7 +57,7 @@ class IdaMemory {
   Vector state_, slope_, dense_, kinds_;
   ContextPointer context_;
   VectorPointer state_vector_, slope_vector_, dense_vector_, kinds_vector_;
-  KluSolver linear_solver_;
+  SparseDirectSolver linear_solver_;
   IdaPointer memory_;
 };
 

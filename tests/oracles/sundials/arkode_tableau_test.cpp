@@ -139,8 +139,8 @@ Vector arkode_error_estimate(const detail::ArkodeTables& tables, const Ivp& ivp,
   RunReport report;
   Work work;
   const ContextPointer context = make_context();
-  const VectorPointer y = wrap_entries(state, context.get());
-  const VectorPointer e = wrap_entries(estimate, context.get());
+  const VectorPointer y = wrap_eigen_vector(state, context.get());
+  const VectorPointer e = wrap_eigen_vector(estimate, context.get());
   auto whole = make_whole_right_hand_side(*ivp.system);
   const bool is_explicit = tables.explicit_part != nullptr;
   ArkStepMemory ark(ivp.t0, y.get(), is_explicit ? std::move(whole) : nullptr,
