@@ -9,8 +9,8 @@ import numpy
 from matplotlib.lines import Line2D
 from plot_style import QUIET, label, look, new_figure
 
-STARTS = {"cold": "set-up anew, guess zero", "warm": "set-up anew, guess from the step before",
-          "kept": "first preconditioner kept, guess from the step before"}
+STARTS = {"cold": "set-up anew, guess zero", "warm": "set-up anew, warm guess",
+          "kept": "first preconditioner kept, warm guess"}
 
 
 def short(name):
@@ -75,7 +75,8 @@ def draw_scaling(result, rows, solvers):
 def draw_sequence(result, rows, solvers):
     """Iterations along the simulation of the largest, stiffest system."""
     iterative = [row for row in rows if "sequence_iterations_kept" in result.case_of(row)
-                 and result.values("sequence_iterations_kept", result.case_of(row)).size > 1]
+                 and result.values("sequence_iterations_kept", result.case_of(row)).size > 1
+                 and result.values("sequence_iterations_cold", result.case_of(row)).max() > 1]
     if not iterative:
         return None
     largest = max(iterative, key=lambda row: (row["unknowns"], row["iterations"]))
@@ -85,7 +86,7 @@ def draw_sequence(result, rows, solvers):
     for panel, (start, meaning) in zip(axes[0], STARTS.items()):
         for row in shown:
             iterations = result.values(f"sequence_iterations_{start}", result.case_of(row))
-            panel.semilogy(numpy.arange(1, iterations.size + 1), numpy.maximum(iterations, 0.5), linewidth=1.4,
+            panel.semilogy(numpy.arange(1, iterations.size + 1), numpy.maximum(iterations, 1), linewidth=1.4,
                            label=short(row["solver"]), markevery=max(1, iterations.size // 6),
                            **look(solvers.index(row["solver"])))
         panel.set_title(meaning, loc="left", fontsize=11)

@@ -218,6 +218,9 @@ class AgreementCase {
     if (!not_compared_.empty()) {
       result.reason += fmt::format("; not accurate enough to compare: {}", fmt::join(not_compared_, ", "));
     }
+    if (!problem_.problem.is_smooth) {
+      result.reason += "; the forces have kinks or jumps, where errors and their estimates are irregular";
+    }
     result.summary = {{"problem", "", problem_.label},
                       {"methods", "1", static_cast<std::int64_t>(compared)},
                       {"not_accurate", "1", static_cast<std::int64_t>(not_compared_.size())},
