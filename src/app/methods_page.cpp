@@ -50,7 +50,7 @@ std::string stability_cell(const MethodInfo& info, const schemes::DerivedPropert
                        interval(derived.stability->imaginary_interval));
   }
   if (derived.oscillator) return fmt::format("hω ≤ {}", interval(derived.oscillator->interval));
-  return "conditional";
+  return info.family == "oracle" ? "–" : "conditional";  // of foreign solvers nothing is derived
 }
 
 std::string properties_cell(const MethodInfo& info, const schemes::DerivedProperties& derived) {

@@ -83,6 +83,20 @@ MethodEntry with_controller(const Data& data, Make make) {
           [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
 }
 
+linalg::LinearSolverOptions read_linear_solver_options(const MethodOptions& options) {
+  const std::string given = text(options, "linear_solver");
+  const std::string name = given.empty() ? "cg" : given;
+  const auto checked = [](const std::string& option, const std::string& call) {
+    try {
+      return linalg::read_linear_solver(call);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("option {}: {}", option, error.what()));
+    }
+  };
+  checked("linear_solver", name);
+  return checked("petsc", name + " " + text(options, "petsc"));
+}
+
 MethodEntry linearised_implicit_euler() {
   using integrators::LinearisedOptions;
   return {integrators::make_implicit_euler_linearised({})->info().name,
@@ -93,9 +107,7 @@ MethodEntry linearised_implicit_euler() {
           {},
           [](const MethodOptions& options) {
             LinearisedOptions chosen;
-            const std::string name = text(options, "linear_solver");
-            const std::string petsc = text(options, "petsc");
-            chosen.linear_solver = linalg::read_linear_solver((name.empty() ? "cg" : name) + " " + petsc);
+            chosen.linear_solver = read_linear_solver_options(options);
             chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
             chosen.tangent =
                 choose<TangentModel>(options, "tangent", TangentModel::exact,

@@ -56,6 +56,8 @@ class Library {
     int is_ended = 0;
     MPI_Finalized(&is_ended);
     if (is_ended != 0) throw SystemError("PETSc cannot start: MPI has been ended in this process");
+    // Without a launcher Open MPI would start a daemon beside the program, which nothing here needs.
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     // Threads call one at a time.
     PETSC_MPI_THREAD_REQUIRED = MPI_THREAD_SERIALIZED;
     PetscErrorCode code = SlepcInitialize(&count, &arguments, nullptr, nullptr);

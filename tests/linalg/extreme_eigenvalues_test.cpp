@@ -37,16 +37,14 @@ double chain_eigenvalue(int n, double k, int j) {
 }
 
 TEST(ExtremeEigenvalues, AreThoseOfAChainInClosedForm) {
-  const int n = 300;
-  const SparseMatrix K = chain(n, 3.0);
   for (const SpectrumEnd end : ends) {
+    // The small end is dense: found from below without inversion, it takes a Krylov space of the matrix's
+    // size.
+    const int n = end == SpectrumEnd::smallest_real ? 60 : 300;
+    const SparseMatrix K = chain(n, 3.0);
     const bool from_below = end == SpectrumEnd::smallest_magnitude || end == SpectrumEnd::smallest_real;
     const ExtremeEigenvalues found =
         extreme_eigenvalues_symmetric(K, {.end = end, .count = 3, .tolerance = 1e-11});
-    if (end == SpectrumEnd::smallest_real) {
-      // The small end is dense: without inversion the Krylov space may need more than SLEPc allows.
-      if (!found.status.ok()) continue;
-    }
     ASSERT_TRUE(found.status.ok()) << found.status.describe();
     ASSERT_EQ(found.values.size(), 3u);
     for (int j = 0; j < 3; ++j) {

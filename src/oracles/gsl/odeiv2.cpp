@@ -63,7 +63,7 @@ const std::vector<Stepper>& steppers() {
        false,
        false,
        "Bulirsch-Stoer, semi-implicit midpoint rule of Bader and Deuflhard"},
-      {{"msadams", 1e-3}, &gsl_odeiv2_step_msadams, 0, 1, true, false, "variable-order Adams"},
+      {{"msadams", 1e-2}, &gsl_odeiv2_step_msadams, 0, 1, true, false, "variable-order Adams"},
       {{"msbdf", 1e-3}, &gsl_odeiv2_step_msbdf, 0, 1, false, false, "variable-order BDF"}};
   return list;
 }

@@ -25,7 +25,7 @@ class TsStepper final : public ForeignStepper {
   TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work);
 
   Status advance(double limit, double& t, VectorRef y) override;
-  /// TSInterpolate is of order one for many types: the loop's Hermite polynomials serve all of them.
+  /// The order of TSInterpolate differs from type to type: the loop's Hermite polynomials serve all alike.
   bool has_dense_output() const override { return false; }
   void interpolate(double t, VectorRef out) override;
   void collect_work(Work& work) const override;
