@@ -14,7 +14,9 @@ import plot_style  # noqa: E402,F401
 import h5py  # noqa: E402
 import matplotlib.colors as colors  # noqa: E402
 import numpy  # noqa: E402
+import plot_agreement  # noqa: E402
 import plot_convergence  # noqa: E402
+import plot_linear_solver  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
 import plot_trajectory  # noqa: E402
@@ -102,6 +104,51 @@ class EveryPlot(PlotTest):
         figure, = self.draw(plot_trajectory, self.write("trajectory"))
         self.assertEqual(sorted(axes.get_ylabel() for axes in figure.axes),
                          ["L [kg·m²/s]", "energy [J]", "p [kg·m/s]", "z [m]"])
+
+
+class Agreement(PlotTest):
+    def marked_pairs(self, figure):
+        return sorted((round(patch.get_y() + 0.5), round(patch.get_x() + 0.5)) for patch in figure.axes[0].patches)
+
+    def test_marks_the_pairs_that_disagree_and_no_other(self):
+        figure, = self.draw(plot_agreement, self.write("agreement"))
+        others = [k for k in range(6) if k != 1]  # explicit Euler is too inaccurate to compare
+        self.assertEqual(self.marked_pairs(figure), sorted([(6, k) for k in others] + [(k, 6) for k in others]))
+        self.assertIn("5 disagree", figure.axes[0].get_title("left"))
+
+    def test_marks_nothing_where_all_agree(self):
+        figure, = self.draw(plot_agreement, self.write("agreement", wrong=None))
+        self.assertEqual(self.marked_pairs(figure), [])
+        self.assertIn("15 pairs, 0 disagree", figure.axes[0].get_title("left"))
+
+    def test_leaves_rows_blank_that_are_not_compared(self):
+        figure, = self.draw(plot_agreement, self.write("agreement", wrong=None))
+        lower, share = (image.get_array() for image in figure.axes[0].images)
+        self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(lower))[1].all())
+        self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(share))[1].all())
+        self.assertIn("1 methods", figure.axes[0].get_xlabel())
+
+
+class LinearSolver(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "linear_solver.h5"
+        synthetic_results.linear_solver(self.path)
+
+    def test_draws_scaling_simulation_and_spectra(self):
+        answer = self.script("plot_results.py", self.path)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(len(list(self.folder.glob("linear_solver-*.png"))), 3)
+
+    def test_has_seconds_and_iterations_over_unknowns(self):
+        scaling, simulation, spectra = self.draw(plot_linear_solver, self.path)
+        seconds, iterations = scaling.axes[:2]
+        numpy.testing.assert_array_equal(seconds.lines[0].get_xdata(), [192, 768, 3072])
+        numpy.testing.assert_allclose(seconds.lines[0].get_ydata()[0], 1e3 * (192e-6 + 1e-7 * 192 ** 1.3))
+        self.assertEqual(len([line for line in iterations.lines]), 1, "a direct solver has no iterations")
+        self.assertEqual(seconds.get_ylabel(), "set-up and solve [ms]")
+        self.assertEqual(len(simulation.axes[0].lines), 1)
+        self.assertEqual(spectra.axes[0].get_ylabel(), "eigenvalue [kg]")
 
 
 class Refusals(PlotTest):

@@ -144,11 +144,67 @@ def spiral(path):
              4 * numpy.pi, [numpy.linspace(-3, 3, 19)] * 2)
 
 
-ALL = {"convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral}
+def agreement(path, wrong="gsl:rk4"):
+    """Seven solutions, one too inaccurate to compare, and one that is wrong by more than it says."""
+    methods = ["certified", "explicit_euler", "rk4", "velocity_verlet", "sundials:cvode_bdf", "petsc:ts_rk", "gsl:rk4"]
+    families = ["reference", "explicit", "explicit", "splitting", "oracle", "oracle", "oracle"]
+    estimate = numpy.array([1e-19, 1e-2, 1e-9, 1e-7, 3e-9, 1e-9, 2e-9])
+    value = 0.5 * estimate * numpy.array([1, -1, 1, -1, 1, -1, 1])
+    if wrong:
+        value[methods.index(wrong)] += 1e-6
+    compared = estimate < 1e-3
+    difference = numpy.abs(value[:, None] - value[None, :])
+    expected = 2 * (estimate[:, None] + estimate[None, :]) + 1e-11
+    agrees = numpy.where(compared[:, None] & compared[None, :], difference <= expected, -1).astype(numpy.int64)
+    numpy.fill_diagonal(agrees, -1)
+    with new_file(path, "agreement", "Agreement of all methods") as file:
+        case = file.create_group("cases/small_cloth")
+        put(case, "method", methods, "")
+        put(case, "family", families, "")
+        put(case, "error_estimate", estimate)
+        put(case, "compared", compared.astype(numpy.int64))
+        put(case, "difference", difference)
+        put(case, "expected_difference", expected)
+        put(case, "agrees", agrees)
+        summary = file.create_group("summary")
+        for name, column in {"case": ["small_cloth"], "problem": ["small_cloth"], "methods": [6], "not_accurate": [1],
+                             "not_applicable": [0], "pairs": [15], "disagreeing": [5 if wrong else 0],
+                             "verdict": ["fails" if wrong else "holds"]}.items():
+            put(summary, name, column)
+
+
+def linear_solver(path):
+    """Three sizes of one cloth, a direct and an iterative solver, and the spectrum of the smallest."""
+    rows = []
+    with new_file(path, "linear_solver", "Linear solvers") as file:
+        for count in (8, 16, 32):
+            problem, unknowns = f"cloth{count}-k100", 3 * count * count
+            if count == 8:
+                case = file.create_group(f"cases/{problem}-h0.01-spectrum")
+                put(case, "eigenvalue", numpy.geomspace(1e-3, 1, unknowns), "kg")
+                put(case, "eigenvalue_block_jacobi", numpy.geomspace(1e-2, 2, unknowns))
+                rows.append((f"{problem}-h0.01-spectrum", problem, 0.01, "spectrum", unknowns, numpy.nan, numpy.nan, 9.0,
+                             1e3, 200.0))
+            for solver in ("cholmod", "petsc -ksp_type cg -pc_type icc -mat_type sbaij"):
+                name = f"{problem}-h0.01-{solver.replace(' ', '_')}"
+                case = file.create_group(f"cases/{name}")
+                iterative = solver.startswith("petsc")
+                for start in ("cold", "warm", "kept") if iterative else ("cold",):
+                    put(case, f"sequence_iterations_{start}", numpy.arange(10, 20) * count // 8 if iterative else [0] * 10)
+                rows.append((name, problem, 0.01, solver, unknowns, 1e-6 * unknowns, 1e-7 * unknowns ** 1.3,
+                             2.0 * count if iterative else numpy.nan, numpy.nan, numpy.nan))
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "problem", "step", "solver", "unknowns", "setup_seconds", "solve_seconds",
+                                 "iterations", "condition", "condition_block_jacobi"), zip(*rows)):
+            put(summary, name, list(column))
+
+
+ALL = {"agreement": agreement, "convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral}
 
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     for name, write in ALL.items():
         write(folder / f"{name}.h5")
+    linear_solver(folder / "linear_solver.h5")
     trajectory(folder / "stopped.h5", particles=60, status="blow_up")
