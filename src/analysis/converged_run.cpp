@@ -44,10 +44,10 @@ class Refinement {
     }
     if (result_.state.size() > 0) {
       const double difference = norm_(solution.state - result_.state);
-      // An error estimate that is blind for the problem takes the same steps whatever the tolerance.
-      const bool is_finer = solution.work.accepted_steps > result_.work.accepted_steps;
-      result_.error_estimate =
-          is_finer ? estimate(difference, expected_ratio) : std::numeric_limits<double>::infinity();
+      // An error estimate that is blind for the problem takes the same steps whatever the tolerance: such a
+      // run says nothing, and what is known from the runs before stays.
+      if (solution.work.accepted_steps <= result_.work.accepted_steps) return true;
+      result_.error_estimate = estimate(difference, expected_ratio);
       previous_difference_ = difference;
     }
     result_.state = std::move(solution.state);
@@ -60,9 +60,8 @@ class Refinement {
 
   /// The error of the finest run from the last two differences: d/(ρ − 1) if they fall by a factor ρ < 2.
   double estimate(double difference, double expected_ratio) const {
-    if (!std::isfinite(previous_difference_) || difference == 0.0) {
-      return std::isfinite(previous_difference_) ? previous_difference_ / expected_ratio : difference;
-    }
+    if (!std::isfinite(previous_difference_)) return std::numeric_limits<double>::infinity();  // one more run
+    if (difference == 0.0) return previous_difference_ / expected_ratio;
     const double ratio = std::max(previous_difference_ / difference, smallest_ratio);
     return std::max({difference, difference / (ratio - 1.0), previous_difference_ / expected_ratio});
   }

@@ -21,20 +21,21 @@ struct RefinementGoal {
 
 /// A solution with an estimate of its own error, which no other solver had a part in.
 struct ConvergedRun {
-  Vector state;                 ///< of the finest run that succeeded; empty if there is none
-  double error_estimate = 0.0;  ///< in the norm given; infinite where fewer than two runs succeeded
-  double step = 0.0;            ///< of the finest run [s]; 0 where the method chooses its steps
-  double tolerance = 0.0;       ///< relative, of the finest run; 0 with constant steps
-  Status status;                ///< of the last run: why there is none, or none finer
-  Work work;                    ///< of the run that `state` comes from
+  Vector state;  ///< of the finest run that succeeded; empty if there is none
+  double error_estimate =
+      0.0;                 ///< in the norm given; infinite where fewer than three runs in a row succeeded
+  double step = 0.0;       ///< of the finest run [s]; 0 where the method chooses its steps
+  double tolerance = 0.0;  ///< relative, of the finest run; 0 with constant steps
+  Status status;           ///< of the last run: why there is none, or none finer
+  Work work;               ///< of the run that `state` comes from
 };
 
 /// Refines until the estimate reaches the goal or the budget is spent: constant steps are halved, tolerances
 /// divided by ten. With d_k the difference of the two finest runs and ρ = d_{k−1}/d_k, the estimate is the
 /// largest of d_k, d_k/(ρ − 1) (which bounds the rest of a geometric series that falls slowly, as under order
 /// reduction) and a fraction of d_{k−1} that no method of its order falls below, so that two runs which are
-/// close by accident do not count as accurate. It is infinite where a tighter tolerance has not led to more
-/// steps.
+/// close by accident do not count as accurate. It takes three runs; one whose tighter tolerance has not led
+/// to more steps does not count as a run.
 ///
 /// `norm` gives the size of a difference of states. `prefers_constant_steps` decides for methods that can do
 /// both. Throws InputError where the method cannot run on the problem.

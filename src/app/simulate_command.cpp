@@ -226,11 +226,11 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::Option* absolute =
       command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")
           ->type_name("A");
-  CLI::Option* petsc =
-      command
-          ->add_option("--petsc", arguments->petsc,
-                       "Options for a petsc: method in PETSc's notation, as \"-ksp_type cg -pc_type gamg\"")
-          ->type_name("TEXT");
+  CLI::Option* petsc = command
+                           ->add_option("--petsc", arguments->petsc,
+                                        "Options of a petsc: method or of the linear solver petsc in PETSc's "
+                                        "notation, as \"-ksp_type gmres -pc_type ilu\"")
+                           ->type_name("TEXT");
   command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")
       ->required()
       ->type_name("T");

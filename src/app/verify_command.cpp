@@ -8,6 +8,7 @@
 
 #include "analysis/verification.hpp"
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
@@ -54,13 +55,15 @@ Verification verify_method(const std::string& call) {
   }
 }
 
-std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsigned jobs) {
+/// The methods that were verified before the user interrupted, in the order of `calls`.
+std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsigned jobs,
+                                     const std::atomic<bool>& interrupted) {
   std::vector<Verification> results(calls.size());
   std::atomic<std::size_t> next{0}, done{0};
   std::mutex output;
   ProgressBar bar("schemes");
   const auto work = [&] {
-    for (std::size_t i = next++; i < calls.size(); i = next++) {
+    for (std::size_t i = next++; i < calls.size() && !interrupted; i = next++) {
       results[i] = verify_method(calls[i]);
       const std::size_t finished = ++done;
       const std::lock_guard lock(output);
@@ -73,6 +76,7 @@ std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsi
   work();
   for (std::thread& thread : threads) thread.join();
   bar.clear();
+  std::erase_if(results, [](const Verification& result) { return result.method.empty(); });
   return results;
 }
 
@@ -131,13 +135,19 @@ int verify(const VerifyArguments& arguments) {
   std::vector<std::string> calls = arguments.methods;
   if (calls.empty()) {
     for (const catalog::MethodEntry& entry : catalog::methods()) {
-      if (entry.info().has_fixed_step) calls.push_back(entry.name);
+      if (entry.info().has_fixed_step && entry.info().family != "oracle") calls.push_back(entry.name);
     }
   }
   for (const std::string& call : calls)
     catalog::make_method(call);  // an unknown name ends before anything runs
-  const std::vector<Verification> results = verify_all(calls, arguments.jobs);
+  const std::atomic<bool>& interrupted = install_interrupt_flag();
+  const std::vector<Verification> results = verify_all(calls, arguments.jobs, interrupted);
   fmt::print("{}", arguments.json ? json(results) : table(results, arguments.all));
+  if (results.size() < calls.size()) {
+    fmt::print(stderr, "federwerk: interrupted: {} of {} methods were verified\n", results.size(),
+               calls.size());
+    return exit_failure;
+  }
   for (const Verification& result : results) {
     for (const PropertyCheck& check : result.checks) {
       if (check.finding == Finding::fails) return exit_verdict_fails;
@@ -154,7 +164,8 @@ void add_verify_command(CLI::App& app, Action& action) {
       "Checks the claimed properties of the schemes: order, stability, symplecticity, conservation, ...");
   auto arguments = std::make_shared<VerifyArguments>();
   command
-      ->add_option("--method", arguments->methods, "Only these methods (default: all that have a fixed step)")
+      ->add_option("--method", arguments->methods,
+                   "Only these methods (default: all our own; oracles only if named)")
       ->type_name("NAME");
   command->add_flag("--json", arguments->json, "As JSON");
   command->add_flag("--all", arguments->all, "Prints properties that do not apply as well");

@@ -21,6 +21,7 @@ Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
   block_size_ = n % 3 == 0 ? 3 : 1;
   inverse_blocks_.resize(static_cast<std::size_t>(n * block_size_));
   ++work.factorisations;
+  if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   for (Index first = 0; first < n; first += block_size_) {
     Block block = Block::Identity();
     for (Index column = 0; column < block_size_; ++column) {
@@ -87,8 +88,13 @@ Status EigenConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work
   return {};
 }
 
-Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work& work) {
-  return factorise(A, work);
+Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&) {
+  matrix_ = A;
+  if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
+  solver_.preconditioner().keep = true;
+  solver_.compute(matrix_);
+  solver_.preconditioner().keep = false;
+  return {};
 }
 
 LinearSolve EigenConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

@@ -28,22 +28,31 @@ class ConjugateGradientSolver final : public LinearSolver {
   ConjugateGradientWorkspace workspace_;
 };
 
-/// Eigen's conjugate gradients with its diagonal preconditioner, as a textbook would call it. Its own
+/// Eigen's diagonal preconditioner, which can be kept while the matrix changes.
+class KeptDiagonal : public Eigen::DiagonalPreconditioner<double> {
+ public:
+  template <class MatrixType>
+  KeptDiagonal& compute(const MatrixType& matrix) {
+    if (!keep) Eigen::DiagonalPreconditioner<double>::compute(matrix);
+    return *this;
+  }
+  bool keep = false;
+};
+
+/// Eigen's conjugate gradients with a diagonal preconditioner, as a textbook would call it. Its own
 /// estimate of the residual is not believed: the true one decides.
 class EigenConjugateGradientSolver final : public LinearSolver {
  public:
   explicit EigenConjugateGradientSolver(const LinearSolverOptions& options);
 
   Status factorise(const SparseMatrix& A, Work& work) override;
-  /// The same as `factorise`: Eigen makes its preconditioner together with the matrix, and a diagonal is
-  /// cheap.
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
 
  private:
   LinearSolverOptions options_;
   SparseMatrix matrix_;
-  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver_;
+  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper, KeptDiagonal> solver_;
   Vector residual_;
 };
 

@@ -30,6 +30,8 @@ class StepLimits {
     }
   }
 
+  bool are_of_constant_steps() const { return step_ != 0.0; }
+
   double of_step(std::uint64_t n) const {
     return step_ == 0.0 || n >= total_ ? end_ : start_ + static_cast<double>(n) * step_;
   }
@@ -84,6 +86,12 @@ Status run(const StepLimits& limits, std::uint64_t maximum_steps, const Ivp& ivp
     }
     const double t_before = t;
     if (Status status = stepper.advance(limits.of_step(n), t, y); !status.ok()) return status;
+    if (limits.are_of_constant_steps() &&
+        std::abs(t - limits.of_step(n)) > 1e-6 * std::abs(limits.of_step(n) - t_before)) {
+      return {StatusCode::library_failure,
+              fmt::format("at t = {:.6g} the library stepped to {:.17g} instead of {:.17g}", t_before, t,
+                          limits.of_step(n))};
+    }
     if (Status status = integrators::check_state(y, t, n); !status.ok()) return status;
     steps_without_progress = t > t_before ? 0 : steps_without_progress + 1;
     if (steps_without_progress == most_steps_without_progress) {

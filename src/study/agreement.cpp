@@ -133,12 +133,12 @@ class AgreementCase {
       if (!has_scale_) set_scale(first_solution(*participant.integrator, goal));
       row.run = refined(*participant.integrator, goal);
     } catch (const InputError& error) {
-      row.run.status = {StatusCode::library_failure, error.what()};
+      refused_.push_back(fmt::format("{}: {}", row.name, error.what()));
       row.run.error_estimate = std::numeric_limits<double>::infinity();
     }
     if (context_.is_interrupted()) throw Interrupted{};
     row.compared = row.run.error_estimate <= settings_.largest_error;
-    if (!row.compared) {
+    if (!row.compared && (refused_.empty() || !refused_.back().starts_with(row.name + ": "))) {
       const std::string why = std::isfinite(row.run.error_estimate)
                                   ? fmt::format("estimate {:.1e} after {} steps", row.run.error_estimate,
                                                 row.run.work.accepted_steps)
@@ -210,11 +210,14 @@ class AgreementCase {
     }
     const auto compared =
         std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.compared; });
-    result.verdict = pairs == 0         ? Verdict::not_applicable
-                     : disagreeing == 0 ? Verdict::holds
-                                        : Verdict::fails;
-    result.reason = fmt::format("{} of {} pairs agree; the largest share of what is expected: {}",
-                                pairs - disagreeing, pairs, worst);
+    result.verdict = disagreeing > 0 || !refused_.empty() ? Verdict::fails
+                     : pairs == 0                         ? Verdict::not_applicable
+                                                          : Verdict::holds;
+    result.reason = pairs == 0
+                        ? "no two solutions are accurate enough to compare"
+                        : fmt::format("{} of {} pairs agree; the largest share of what is expected: {}",
+                                      pairs - disagreeing, pairs, worst);
+    if (!refused_.empty()) result.reason += fmt::format("; cannot run: {}", fmt::join(refused_, ", "));
     if (!not_compared_.empty()) {
       result.reason += fmt::format("; not accurate enough to compare: {}", fmt::join(not_compared_, ", "));
     }
@@ -287,7 +290,8 @@ class AgreementCase {
   StateScale scale_;
   bool has_scale_ = false;
   std::vector<Row> rows_;
-  std::vector<std::string> not_compared_;
+  std::vector<std::string> not_compared_;  ///< methods and why
+  std::vector<std::string> refused_;       ///< methods that refuse the problem, and how
   std::int64_t not_applicable_ = 0;
   std::vector<double> difference_, expected_;
   std::vector<std::int64_t> agrees_;
@@ -308,6 +312,15 @@ Settings read_settings(const CheckedTable& spec, bool quick, std::size_t& proble
   const auto quick_problems = static_cast<std::size_t>(
       shrunk.integer_or("problems", static_cast<std::int64_t>(std::min<std::size_t>(problems, 2)), 1,
                         static_cast<std::int64_t>(problems)));
+  if (settings.error > settings.largest_error) {
+    table.fail("error", fmt::format("found {}, expected at most largest_error = {}", settings.error,
+                                    settings.largest_error));
+  }
+  if (2 * settings.fewest_steps > std::min(settings.most_steps, quick_steps)) {
+    table.fail("fewest_steps",
+               fmt::format("found {}, expected at most half of most_steps, which is {} ({} with --quick)",
+                           settings.fewest_steps, settings.most_steps, quick_steps));
+  }
   if (quick) {
     settings.error = quick_error;
     settings.most_steps = quick_steps;

@@ -183,7 +183,7 @@ class SolverCase {
       }
       if (Status status = systems_.advance(); !status.ok()) return status;
     }
-    if (is_iterative() && settings_.sequence > 0) {
+    if (is_iterative() && most_iterations_ > 0) {
       figures_.iterations_warm = runs_[1].mean_iterations();
       figures_.iterations_kept = runs_[2].mean_iterations();
     }
@@ -226,9 +226,10 @@ class SolverCase {
       if (!solve.status.ok()) return solve.status;
       if (Status status = check(solve.relative_residual); !status.ok()) return status;
       const std::size_t heap_after = heap_usage();
-      figures_.memory = heap_after > heap_before ? static_cast<double>(heap_after - heap_before) : 0.0;
+      figures_.memory = heap_after > heap_before ? static_cast<double>(heap_after - heap_before) : none;
       figures_.residual = solve.relative_residual;
-      figures_.iterations = is_iterative() ? static_cast<double>(solve.iterations) : none;
+      figures_.iterations =
+          is_iterative() && solve.iterations > 0 ? static_cast<double>(solve.iterations) : none;
       most_iterations_ = std::max(most_iterations_, static_cast<std::int64_t>(solve.iterations));
     }
     figures_.assembly = smallest(assembly_);

@@ -94,12 +94,14 @@ TEST(Agreement, SeesASolverWhoseStiffnessIsOffByAHundredThousandth) {
 }
 
 TEST(Agreement, NamesMethodsThatStayTooInaccurateAndLeavesOutThoseThatCannotRun) {
-  const StudyResult study = run("\"rk4\", \"explicit_euler\", \"velocity_verlet\"",
-                                "name = \"dahlquist\"\nparameters = {lambda = -400}\n");
+  const StudyResult study =
+      run("\"rk4\", \"explicit_euler\", \"velocity_verlet\"", "name = \"rotation\"\nt_end = 12.0\n");
   const CaseResult& result = study.cases.front();
   EXPECT_EQ(result.verdict, Verdict::holds) << result.reason;
   EXPECT_EQ(values<std::string>(result, "method"),
             (std::vector<std::string>{"exact", "rk4", "explicit_euler"}));
+  EXPECT_EQ(values<std::int64_t>(result, "compared"), (std::vector<std::int64_t>{1, 1, 0}));
+  EXPECT_THAT(result.reason, HasSubstr("not accurate enough to compare: explicit_euler"));
 }
 
 TEST(Agreement, ReadsPatternsOfMethods) {
@@ -124,6 +126,7 @@ TEST(Agreement, RefusesPatternsWithoutMeaning) {
               HasSubstr("agreement.toml:3: methods[0]: found \"gls:*\", which no method fits"));
   EXPECT_THAT(refusal("\"rk4\", \"rk5\""), HasSubstr("methods[1]: unknown method \"rk5\""));
   EXPECT_THAT(refusal("\"rk4\"", "without = [\"heun\"]\n"), HasSubstr("without[0]: found \"heun\""));
+  EXPECT_THAT(refusal("\"rk4\", \"petsc:ts_theta[petsc=-ksp_tpye cg]\""), HasSubstr("methods[1]"));
   EXPECT_THAT(refusal("\"rk4\"", "without = [\"rk4\"]\n"), HasSubstr("methods: found no method"));
 }
 

@@ -43,6 +43,9 @@ struct Stepper {
   bool is_explicit;
   bool has_fixed_step;
   const char* title;
+  bool is_symplectic = false;  ///< and symmetric
+  bool is_a_stable = false;
+  bool is_l_stable = false;
 };
 
 const std::vector<Stepper>& steppers() {
@@ -53,9 +56,34 @@ const std::vector<Stepper>& steppers() {
       {{"rkf45", 1.0}, &gsl_odeiv2_step_rkf45, 5, 6, true, true, "Runge-Kutta-Fehlberg 5(4)"},
       {{"rkck", 1.0}, &gsl_odeiv2_step_rkck, 5, 6, true, true, "Runge-Kutta-Cash-Karp 5(4)"},
       {{"rk8pd", 1.0}, &gsl_odeiv2_step_rk8pd, 8, 13, true, true, "Prince-Dormand 8(7)"},
-      {{"rk1imp", 1.0}, &gsl_odeiv2_step_rk1imp, 1, 1, false, true, "implicit Euler, step doubling"},
-      {{"rk2imp", 1.0}, &gsl_odeiv2_step_rk2imp, 2, 1, false, true, "implicit midpoint, step doubling"},
-      {{"rk4imp", 1.0}, &gsl_odeiv2_step_rk4imp, 4, 2, false, true, "Gauss of two stages, step doubling"},
+      {{"rk1imp", 1.0},
+       &gsl_odeiv2_step_rk1imp,
+       1,
+       1,
+       false,
+       true,
+       "implicit Euler, step doubling",
+       false,
+       true,
+       true},
+      {{"rk2imp", 1.0},
+       &gsl_odeiv2_step_rk2imp,
+       2,
+       1,
+       false,
+       true,
+       "implicit midpoint, step doubling",
+       true,
+       true},
+      {{"rk4imp", 1.0},
+       &gsl_odeiv2_step_rk4imp,
+       4,
+       2,
+       false,
+       true,
+       "Gauss of two stages, step doubling",
+       true,
+       true},
       {{"bsimp", 1.0},
        &gsl_odeiv2_step_bsimp,
        0,
@@ -92,6 +120,8 @@ class OdeivStepper final : public ForeignStepper {
                    this};
     const auto* adaptive = std::get_if<AdaptiveStep>(&control);
     is_adaptive_ = adaptive != nullptr;
+    needs_time_derivative_ = name_ == "bsimp";
+    time_scale_ = ivp.t1 - ivp.t0;
     maximum_step_ = is_adaptive_ ? adaptive->maximum_step : std::numeric_limits<double>::infinity();
     minimum_step_ = is_adaptive_ ? adaptive->minimum_step : 0.0;
     const double absolute = is_adaptive_ ? adaptive->absolute_tolerance : rounding_tolerance;
@@ -107,7 +137,7 @@ class OdeivStepper final : public ForeignStepper {
 
   Status advance(double limit, double& t, VectorRef y) override {
     last_message.clear();
-    last_evaluation_was_finite_ = true;
+    met_non_finite_ = false;
     int code = GSL_SUCCESS;
     if (is_adaptive_) {
       step_ = std::min(step_, maximum_step_);
@@ -115,9 +145,19 @@ class OdeivStepper final : public ForeignStepper {
       code = gsl_odeiv2_evolve_apply(driver_->e, driver_->c, driver_->s, &gsl_system_, &t, target, &step_,
                                      y.data());
     } else {
+      // GSL halves a step whose stages fail, also without a controller: that one is not the scheme's.
+      const double start = t;
       double step = limit - t;
       code =
           gsl_odeiv2_evolve_apply(driver_->e, nullptr, driver_->s, &gsl_system_, &t, limit, &step, y.data());
+      if (failure_) std::rethrow_exception(failure_);
+      if (code == GSL_SUCCESS && t < limit) {
+        t = start;
+        return {met_non_finite_ ? StatusCode::non_finite : StatusCode::newton_failed,
+                fmt::format("GSL {} at t = {:.6g}: {}", name_, t,
+                            met_non_finite_ ? "the right-hand side is not finite"
+                                            : "the equations of the stages cannot be solved for this step")};
+      }
     }
     if (failure_) std::rethrow_exception(failure_);
     if (code != GSL_SUCCESS) return failure_status(code, t);
@@ -147,8 +187,7 @@ class OdeivStepper final : public ForeignStepper {
   }
 
   Status failure_status(int code, double t) const {
-    const StatusCode kind = !last_evaluation_was_finite_
-                                ? (is_adaptive_ ? StatusCode::step_too_small : StatusCode::non_finite)
+    const StatusCode kind = met_non_finite_                               ? StatusCode::non_finite
                             : code == GSL_ESING                           ? StatusCode::matrix_singular
                             : code == GSL_FAILURE && is_adaptive_         ? StatusCode::step_too_small
                             : code == GSL_FAILURE || code == GSL_EMAXITER ? StatusCode::newton_failed
@@ -175,8 +214,9 @@ class OdeivStepper final : public ForeignStepper {
       VectorMap slope(dydt, n);
       run.system_.rhs(t, ConstVectorMap(y, n), slope);
       ++run.work_.rhs_evaluations;
-      run.last_evaluation_was_finite_ = slope.allFinite();
-      return run.last_evaluation_was_finite_ ? GSL_SUCCESS : GSL_FAILURE;  // a smaller step is tried
+      if (slope.allFinite()) return static_cast<int>(GSL_SUCCESS);
+      run.met_non_finite_ = true;
+      return static_cast<int>(GSL_FAILURE);  // a smaller step is tried
     });
   }
 
@@ -189,13 +229,16 @@ class OdeivStepper final : public ForeignStepper {
       ++run.work_.jacobian_evaluations;
       using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
       Eigen::Map<DenseRows>(dfdy, n, n) = run.jacobian_;
-      // ∂f/∂t by central differences, exact to 1e-10 or so; bsimp is the one that uses it.
-      const double delta = std::cbrt(std::numeric_limits<double>::epsilon()) * std::max(1e-3, std::abs(t));
+      if (!run.needs_time_derivative_) {
+        VectorMap(dfdt, n).setZero();  // read by bsimp only
+        return static_cast<int>(GSL_SUCCESS);
+      }
+      const double delta = std::cbrt(std::numeric_limits<double>::epsilon()) * run.time_scale_;
       run.system_.rhs(t + delta, state, run.later_);
       run.system_.rhs(t - delta, state, run.earlier_);
       run.work_.rhs_evaluations += 2;
       VectorMap(dfdt, n) = (run.later_ - run.earlier_) / (2.0 * delta);
-      return GSL_SUCCESS;
+      return static_cast<int>(GSL_SUCCESS);
     });
   }
 
@@ -208,7 +251,9 @@ class OdeivStepper final : public ForeignStepper {
   Vector later_, earlier_;
   std::exception_ptr failure_;
   bool is_adaptive_ = false;
-  bool last_evaluation_was_finite_ = true;
+  bool met_non_finite_ = false;  ///< in this step
+  bool needs_time_derivative_ = false;
+  double time_scale_ = 1.0;
   double step_ = 0.0, maximum_step_ = 0.0, minimum_step_ = 0.0;
 };
 
@@ -236,6 +281,10 @@ std::unique_ptr<Integrator> make_gsl_stepper(const std::string& name, const GslO
                     .is_multistep = stepper.order == 0 && name != "bsimp",
                     .is_adaptive = true,
                     .has_fixed_step = stepper.has_fixed_step,
+                    .is_symplectic = stepper.is_symplectic,
+                    .is_symmetric = stepper.is_symplectic,
+                    .is_a_stable = stepper.is_a_stable,
+                    .is_l_stable = stepper.is_l_stable,
                     .formula = fmt::format("gsl_odeiv2_step_{}", name),
                     .reference = "[Galassi et al. 2009]"};
     return std::make_unique<OracleIntegrator>(

@@ -54,9 +54,9 @@ std::unique_ptr<Integrator> make(MethodInfo info, TsMethod method, ToleranceScal
 }  // namespace
 
 const std::vector<TsType>& ts_rk_types() {
-  static const std::vector<TsType> types = {{"1fe", 1}, {"2a", 2},  {"2b", 2},  {"3", 3},
-                                            {"3bs", 3}, {"4", 4},   {"5f", 5},  {"5dp", 5},
-                                            {"5bs", 5}, {"6vr", 6}, {"7vr", 7}, {"8vr", 8}};
+  static const std::vector<TsType> types = {{"1fe", 1, 1}, {"2a", 2, 2},  {"2b", 2, 2},   {"3", 3, 3},
+                                            {"3bs", 3, 3}, {"4", 4, 4},   {"5f", 5, 6},   {"5dp", 5, 6},
+                                            {"5bs", 5, 7}, {"6vr", 6, 8}, {"7vr", 7, 10}, {"8vr", 8, 13}};
   return types;
 }
 
@@ -64,6 +64,7 @@ std::unique_ptr<Integrator> make_ts_rk(const TsRkOptions& options) {
   const TsType& type = find_type(ts_rk_types(), options.type);
   MethodInfo info = info_of("ts_rk", fmt::format("PETSc TS, explicit Runge-Kutta {}", type.name), type.order);
   info.is_explicit = true;
+  info.stages = type.stages;
   // The others have no embedded solution.
   info.is_adaptive = type.name != "1fe" && type.name != "2b" && type.name != "3" && type.name != "4";
   info.formula = "k_i = f(t + c_i h, y + h sum_j a_ij k_j), y1 = y + h sum_i b_i k_i";
@@ -84,6 +85,7 @@ std::unique_ptr<Integrator> make_ts_theta(const TsThetaOptions& options) {
   info.is_a_stable = options.theta >= 0.5;
   info.is_l_stable = options.theta == 1.0;
   info.is_symmetric = options.theta == 0.5;
+  info.is_symplectic = options.theta == 0.5 && !options.endpoint;  // the midpoint rule
   return make(std::move(info),
               {.type = TSTHETA,
                .form = TsForm::implicit_form,
@@ -171,6 +173,7 @@ std::unique_ptr<Integrator> make_ts_alpha2(const TsAlpha2Options& options) {
   info.carries_more_than_state = true;
   info.is_a_stable = true;
   info.is_l_stable = options.rho_infinity == 0.0;
+  info.is_symplectic = info.is_symmetric = options.rho_infinity == 1.0;  // alpha_m = alpha_f = 1/2: midpoint
   info.reference = "[Chung, Hulbert 1993; Abhyankar et al. 2018]";
   return make(std::move(info),
               {.type = TSALPHA2,
@@ -189,6 +192,7 @@ std::unique_ptr<Integrator> make_ts_basicsymplectic(const TsBasicSymplecticOptio
   info.is_explicit = true;
   info.is_adaptive = false;
   info.is_symplectic = true;
+  info.is_symmetric = options.order == 2;
   info.formula = "for each i: v += c_i h f(t, q)/M, q += d_i h v, t += d_i h";
   info.needs_second_order = info.needs_position_forces = true;
   return make(

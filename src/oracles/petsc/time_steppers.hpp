@@ -17,6 +17,7 @@ namespace fw::oracles {
 struct TsType {
   std::string name;
   int order;
+  int stages = 1;  ///< right-hand sides per step, first-same-as-last not counted twice; of explicit schemes
 };
 
 /// Explicit Runge-Kutta: 1fe, 2a, 2b, 3, 3bs, 4, 5f, 5dp, 5bs, 6vr, 7vr, 8vr.

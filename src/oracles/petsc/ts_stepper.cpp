@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "core/error.hpp"
 #include "integrators/initial_step.hpp"
@@ -29,6 +32,42 @@ constexpr int most_rejections = 60;
 bool is_close(double a, double b) {
   return std::abs(a - b) <=
          10.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(a), std::abs(b));
+}
+
+/// Options that would change the method behind its description, the interval or the steps behind the run, or
+/// how failures are told, and what says it instead.
+void refuse_options(const std::string& text, bool is_adaptive) {
+  static const std::pair<std::string_view, std::string_view> refused[] = {
+      {"-ts_dt", "the step of the run"},
+      {"-ts_max_steps", "the end time of the run"},
+      {"-ts_max_time", "the end time of the run"},
+      {"-ts_final_time", "the end time of the run"},
+      {"-ts_init_time", "the start of the run"},
+      {"-ts_exact_final_time", "the end time of the run"},
+      {"-ts_theta_", "the method's own options"},
+      {"-ts_rk_type", "the method's own options"},
+      {"-ts_bdf_order", "the method's own options"},
+      {"-ts_arkimex_", "the method's own options"},
+      {"-ts_rosw_type", "the method's own options"},
+      {"-ts_basicsymplectic_type", "the method's own options"},
+      {"-ts_alpha_", "the method's own options"},
+      {"-ts_error_if_step_fails", "the status of the run"},
+      {"-snes_error_if_not_converged", "the status of the run"},
+      {"-ksp_error_if_not_converged", "the status of the run"}};
+  std::istringstream words(text);
+  bool follows_adapt_type = false;
+  for (std::string word; words >> word;) {
+    if (follows_adapt_type && (word == "none") == is_adaptive) {
+      throw InputError(fmt::format("PETSc options \"{}\": -ts_adapt_type {}, but the run has {}", text, word,
+                                   is_adaptive ? "tolerances" : "a constant step"));
+    }
+    follows_adapt_type = word == "-ts_adapt_type";
+    for (const auto& [option, instead] : refused) {
+      if (word.starts_with(option)) {
+        throw InputError(fmt::format("PETSc options \"{}\": {} is given by {}", text, word, instead));
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -103,6 +142,7 @@ void TsStepper::set_solver_defaults() {
 }
 
 void TsStepper::configure(const TsMethod& method) {
+  refuse_options(method.petsc_options, is_adaptive_);
   if (method.configure) method.configure(stepper_);
   linalg::with_options_to_blame(text_, [&] { petsc_check(TSSetFromOptions(stepper_)); });
   PetscBool is_same = PETSC_FALSE;

@@ -202,6 +202,7 @@ Status CvodeSession::status_of_flag(int flag, double t) const {
     case CV_TOO_MUCH_WORK:
       return with_reason(StatusCode::step_limit);
     case CV_ERR_FAILURE:
+    case CV_TOO_MUCH_ACC:
       return with_reason(StatusCode::step_too_small);
     case CV_CONV_FAILURE:
       return with_reason(StatusCode::newton_failed);

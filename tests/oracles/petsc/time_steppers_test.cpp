@@ -387,6 +387,13 @@ TEST(PetscTs, NamesWhatIsWrongWithItsOptions) {
   EXPECT_THAT(message([] { return make_ts_rk({.petsc = "-ts_adpat_type none"}); }),
               HasSubstr("-ts_adpat_type"));
   EXPECT_THAT(message([] { return make_ts_rk({.petsc = "-ts_type bdf"}); }), HasSubstr("-ts_type"));
+  for (const char* option :
+       {"-ts_dt 0.3", "-ts_max_steps 3", "-ts_max_time 0.1", "-ts_theta_theta 1", "-ts_rk_type 1fe",
+        "-ts_error_if_step_fails", "-ksp_error_if_not_converged", "-ts_adapt_type basic"}) {
+    const std::string text = option;
+    EXPECT_THAT(message([&text] { return make_ts_theta({.petsc = text}); }),
+                HasSubstr(text.substr(0, text.find(' '))));
+  }
   EXPECT_THAT(message([] { return make_ts_rk({.petsc = "-ts_adapt_type nonsense"}); }),
               HasSubstr("nonsense"));
   EXPECT_THAT(message([] { return make_ts_bdf({.petsc = "-ksp_type gmress"}); }), HasSubstr("gmress"));
