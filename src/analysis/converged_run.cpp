@@ -44,8 +44,7 @@ class Refinement {
     }
     if (result_.state.size() > 0) {
       const double difference = norm_(solution.state - result_.state);
-      // An error estimate that is blind for the problem takes the same steps whatever the tolerance: such a
-      // run says nothing, and what is known from the runs before stays.
+      // A run that is no finer says nothing, and what is known from the runs before stays.
       if (solution.work.accepted_steps <= result_.work.accepted_steps) return true;
       result_.error_estimate = estimate(difference, expected_ratio);
       previous_difference_ = difference;
@@ -95,11 +94,14 @@ ConvergedRun run_to_accuracy(const Integrator& integrator, const Ivp& ivp,
   } else {
     // With tolerances on each step the error falls like tolerance^(p/(p + 1)): by √10 at least, with order 1.
     const double expected_ratio = std::sqrt(10.0);
+    // An error estimate can be blind for a problem or a controller erratic: the largest step shrinks along.
+    double largest_step = (ivp.t1 - ivp.t0) / static_cast<double>(goal.fewest_steps);
     // The last tolerance is reached exactly, rounding of the powers aside.
     for (double tolerance = goal.first_tolerance; tolerance >= 0.9 * goal.smallest_tolerance;
-         tolerance /= 10.0) {
+         tolerance /= 10.0, largest_step /= 2.0) {
       const AdaptiveStep control{.relative_tolerance = tolerance,
                                  .absolute_tolerance = tolerance * goal.absolute_over_relative,
+                                 .maximum_step = largest_step,
                                  .maximum_steps = 16 * goal.most_steps};
       if (!refinement.refine(control, expected_ratio)) break;
     }

@@ -30,8 +30,9 @@ struct ConvergedRun {
   Work work;               ///< of the run that `state` comes from
 };
 
-/// Refines until the estimate reaches the goal or the budget is spent: constant steps are halved, tolerances
-/// divided by ten. With d_k the difference of the two finest runs and ρ = d_{k−1}/d_k, the estimate is the
+/// Refines until the estimate reaches the goal or the budget is spent: constant steps are halved; tolerances
+/// are divided by ten and the largest step allowed is halved, since a method's error estimate can be blind
+/// for a problem. With d_k the difference of the two finest runs and ρ = d_{k−1}/d_k, the estimate is the
 /// largest of d_k, d_k/(ρ − 1) (which bounds the rest of a geometric series that falls slowly, as under order
 /// reduction) and a fraction of d_{k−1} that no method of its order falls below, so that two runs which are
 /// close by accident do not count as accurate. It takes three runs; one whose tighter tolerance has not led

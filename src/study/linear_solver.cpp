@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "core/heap_usage.hpp"
 #include "linalg/linear_solver.hpp"
 #include "study/problem_spec.hpp"
+#include "study/step_spectrum.hpp"
 #include "study/step_systems.hpp"
 
 namespace fw::study {
@@ -268,38 +268,23 @@ class SolverCase {
   std::int64_t most_iterations_ = 0;
 };
 
-/// The Cholesky factors of the 3×3 diagonal blocks (1×1 where the size is no multiple of three), applied from
-/// both sides: L⁻¹ A L⁻ᵀ has the spectrum of the block-Jacobi preconditioned matrix.
-Matrix block_jacobi_scaled(const Matrix& A) {
-  const Index n = A.rows(), block = n % 3 == 0 ? 3 : 1;
-  Matrix scaled = A;
-  for (Index first = 0; first < n; first += block) {
-    const Eigen::LLT<Matrix> cholesky(A.block(first, first, block, block));
-    scaled.middleRows(first, block) = cholesky.matrixL().solve(scaled.middleRows(first, block)).eval();
-    scaled.middleCols(first, block) =
-        cholesky.matrixL().solve(scaled.middleCols(first, block).transpose()).transpose().eval();
-  }
-  return scaled;
-}
-
 /// All eigenvalues of the first system of a simulation, and what they promise conjugate gradients.
 CaseResult run_spectrum(const SystemSpec& system, const Settings& settings) {
   const StepSystems systems(system.problem.problem.ivp, system.step);
-  const Matrix A = systems.matrix();
-  const Index n = A.rows();
-  const Vector eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
-  const Vector scaled =
-      Eigen::SelfAdjointEigenSolver<Matrix>(block_jacobi_scaled(A), Eigen::EigenvaluesOnly).eigenvalues();
+  const StepSpectrum spectrum = spectrum_of(systems.matrix());
+  const Index n = spectrum.eigenvalues.size();
   Figures figures{.solver = "spectrum", .unknowns = n};
-  figures.smallest_eigenvalue = eigenvalues[0];
-  figures.largest_eigenvalue = eigenvalues[n - 1];
-  figures.condition = eigenvalues[n - 1] / eigenvalues[0];
-  figures.condition_block_jacobi = scaled[n - 1] / scaled[0];
+  figures.smallest_eigenvalue = spectrum.eigenvalues[0];
+  figures.largest_eigenvalue = spectrum.eigenvalues[n - 1];
+  figures.condition = spectrum.condition();
+  figures.condition_block_jacobi = spectrum.condition_block_jacobi();
 
   CaseResult result;
-  result.columns = {
-      {"eigenvalue", "kg", std::vector<double>(eigenvalues.data(), eigenvalues.data() + n), {}, {}},
-      {"eigenvalue_block_jacobi", "1", std::vector<double>(scaled.data(), scaled.data() + n), {}, {}}};
+  const auto column = [n](const Vector& values) {
+    return std::vector<double>(values.data(), values.data() + n);
+  };
+  result.columns = {{"eigenvalue", "kg", column(spectrum.eigenvalues), {}, {}},
+                    {"eigenvalue_block_jacobi", "1", column(spectrum.eigenvalues_block_jacobi), {}, {}}};
   Work work;
   const auto solver = linalg::make_linear_solver({.relative_tolerance = settings.tolerance});
   Status status = solver->factorise(systems.matrix(), work);
@@ -311,13 +296,8 @@ CaseResult run_spectrum(const SystemSpec& system, const Settings& settings) {
   }
   figures.iterations = static_cast<double>(solve.iterations);
   figures.residual = solve.relative_residual;
-  // ‖e_k‖_A ≤ 2 ((√κ − 1)/(√κ + 1))^k ‖e_0‖_A, and ‖r_k‖/‖r_0‖ ≤ √κ(A) ‖e_k‖_A/‖e_0‖_A.
-  const double root = std::sqrt(figures.condition_block_jacobi);
-  const double bound = root <= 1.0 + 1e-12
-                           ? 1.0
-                           : std::ceil(std::log(settings.tolerance / (2.0 * std::sqrt(figures.condition))) /
-                                       std::log((root - 1.0) / (root + 1.0)));
-  const bool holds = status.ok() && eigenvalues[0] > 0.0 && figures.iterations <= bound;
+  const double bound = spectrum.iteration_bound(settings.tolerance);
+  const bool holds = status.ok() && spectrum.eigenvalues[0] > 0.0 && figures.iterations <= bound;
   result.verdict = holds ? Verdict::holds : Verdict::fails;
   result.reason = status.ok()
                       ? fmt::format(

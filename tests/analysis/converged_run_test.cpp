@@ -41,13 +41,22 @@ TEST(ConvergedRun, BoundsItsErrorWithConstantStepsAndWithTolerances) {
   }
 }
 
-TEST(ConvergedRun, BelievesNoErrorEstimateThatIsBlind) {
+TEST(ConvergedRun, IsNotFooledByAnErrorEstimateThatIsBlind) {
   // ROS3P and its embedded solution have the same stability function: on a linear system it never rejects.
   const Problem problem = problems::damped_oscillator();
   const auto ros3p =
       integrators::make_rosenbrock(integrators::named(schemes::rosenbrock_tableaus(), "ros3p"));
-  const ConvergedRun adaptive = run_to_accuracy(*ros3p, problem.ivp, largest, {.error = 1e-6});
-  EXPECT_GT(adaptive.error_estimate, 1e-2);
+  NullObserver observer;
+  const Solution blind = ros3p->solve(
+      problem.ivp, AdaptiveStep{.relative_tolerance = 1e-12, .absolute_tolerance = 1e-14}, observer);
+  Vector exact(2);
+  for (Index i = 0; i < 2; ++i) {
+    exact[i] = static_cast<double>(problem.exact(problem.ivp.t1)[static_cast<std::size_t>(i)]);
+  }
+  ASSERT_GT(largest(blind.state - exact), 1e-2) << "it is not blind any more";
+  const ConvergedRun adaptive = run_to_accuracy(*ros3p, problem.ivp, largest, {.error = 1e-7});
+  EXPECT_LT(adaptive.error_estimate, 1e-4);
+  EXPECT_LE(largest(adaptive.state - exact), adaptive.error_estimate);
   const ConvergedRun constant = run_to_accuracy(*ros3p, problem.ivp, largest, {.error = 1e-6}, true);
   EXPECT_LE(constant.error_estimate, 1e-6);
 }
