@@ -49,7 +49,9 @@ TEST(LinearSolverStudy, FindsTheSameSolutionWithEverySolver) {
     EXPECT_LE(figure(result, "residual"), 1e-7) << result.id;
     if (result.id.ends_with("spectrum")) continue;
     EXPECT_LE(figure(result, "difference"), 1e-5) << result.id;
+#ifndef __SANITIZE_ADDRESS__  // whose allocator does not tell
     EXPECT_GT(figure(result, "memory"), 1e3) << result.id;
+#endif
   }
 }
 
