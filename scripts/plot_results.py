@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 """Draws the picture that fits each result file, by its kind."""
 
+import importlib
+import importlib.util
 import sys
 
 import plot_style  # first: it finds a Python with the libraries
-import plot_agreement
-import plot_convergence
-import plot_linear_solver
 import plot_slope_field
 import plot_spiral
-import plot_trajectory
 
 
 def draw_simulated(result):
@@ -22,8 +20,8 @@ def draw_simulated(result):
 def choose_drawing(result):
     if result.kind == "simulate":
         return draw_simulated(result)
-    return {"agreement": plot_agreement.draw, "convergence": plot_convergence.draw,
-            "linear_solver": plot_linear_solver.draw, "trajectory": plot_trajectory.draw}.get(result.kind)
+    module = f"plot_{result.kind}"  # a kind of study has a script of its name
+    return importlib.import_module(module).draw if importlib.util.find_spec(module) else None
 
 
 if __name__ == "__main__":

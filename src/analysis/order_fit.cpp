@@ -1,12 +1,11 @@
 #include "analysis/order_fit.hpp"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
-#include <gsl/gsl_fit.h>
-#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "analysis/power_law.hpp"
 
 namespace fw::analysis {
 
@@ -76,14 +75,12 @@ OrderFit fit_order(std::span<const double> steps, std::span<const double> errors
   if (last - begin < static_cast<std::size_t>(minimum_fit_points)) return give_up(last - begin);
 
   const std::size_t n = last - begin;
-  double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, sum_squares = 0.0;
-  gsl_fit_linear(log_step.data() + begin, 1, log_error.data() + begin, 1, n, &intercept, &fit.order, &cov00,
-                 &cov01, &cov11, &sum_squares);
-  const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * std::sqrt(cov11);
-  fit.order_low = fit.order - half_width;
-  fit.order_high = fit.order + half_width;
-  fit.correlation = gsl_stats_correlation(log_step.data() + begin, 1, log_error.data() + begin, 1, n);
-  fit.points = static_cast<int>(n);
+  const PowerLaw law = fit_power_law(steps.subspan(begin, n), errors.subspan(begin, n));
+  fit.order = law.exponent;
+  fit.order_low = law.exponent_low;
+  fit.order_high = law.exponent_high;
+  fit.correlation = law.correlation;
+  fit.points = law.points;
   std::fill(fit.used.begin() + static_cast<std::ptrdiff_t>(begin),
             fit.used.begin() + static_cast<std::ptrdiff_t>(last), char{1});
   fit.valid = true;

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "analysis/order_fit.hpp"
-#include "analysis/reference_cache.hpp"
 #include "core/error.hpp"
 #include "study/error_norms.hpp"
 #include "study/problem_spec.hpp"
+#include "study/shared_problem.hpp"
+#include "study/stop_when_interrupted.hpp"
 
 namespace fw::study {
 
@@ -49,38 +49,6 @@ constexpr double rounding_floor = 2e-13;
 constexpr double slope_tolerance = 0.05;
 /// A reference has to be this much better than every error that is reported.
 constexpr double reference_margin = 0.01;
-
-class StopWhenInterrupted final : public Observer {
- public:
-  explicit StopWhenInterrupted(const RunContext& context) : context_(context) {}
-  bool observe(const StepView&) override { return !context_.is_interrupted(); }
-
- private:
-  const RunContext& context_;
-};
-
-/// A problem with its reference, which the first case to need it computes for all.
-class SharedProblem {
- public:
-  explicit SharedProblem(StudyProblem problem) : problem_(std::move(problem)) {}
-
-  const StudyProblem& entry() const { return problem_; }
-
-  const analysis::ReferenceSolution& reference(const RunContext& context) const {
-    std::call_once(once_, [&] {
-      const double end[] = {problem_.problem.ivp.t1};
-      reference_ = problem_.problem.exact ? analysis::reference(problem_.problem, end)
-                                          : analysis::ReferenceCache(context.reference_cache)
-                                                .certified(problem_.identity, problem_.problem.ivp, end);
-    });
-    return reference_;
-  }
-
- private:
-  StudyProblem problem_;
-  mutable std::once_flag once_;
-  mutable analysis::ReferenceSolution reference_;
-};
 
 /// The case problem × method.
 class ConvergenceCase {

@@ -33,6 +33,8 @@ struct PlannedCase {
   std::string id;        ///< unique in the study, usable as a group name
   std::string identity;  ///< the resolved case as text: equal text, equal result
   std::function<CaseResult(const RunContext&)> run;
+  /// Its seconds are results: it never runs beside another case, and on one processor.
+  bool is_timed = false;
 };
 
 /// A study that has been read and checked completely, ready to run.
@@ -41,6 +43,7 @@ struct Plan {
   std::string title;
   std::string spec;  ///< the resolved input as TOML text
   std::int64_t seed = 0;
+  double time_limit = 0.0;              ///< [s] of one case; 0: none
   std::vector<std::string> warnings{};  ///< what is legal but has no effect, one sentence each
   std::vector<PlannedCase> cases{};
 };

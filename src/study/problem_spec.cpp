@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/error.hpp"
+#include "core/toml_assignment.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "scene/scene.hpp"
 
@@ -44,30 +48,58 @@ Problem problem_from_scene(scene::Scene scene, const std::string& name, double t
   return problem;
 }
 
+/// A scene as a study names it: the file, or what a result file keeps of it.
+struct SceneText {
+  std::string name;  ///< for messages
+  std::string text;
+};
+
+SceneText scene_text_of(const CheckedTable& section) {
+  const std::filesystem::path path =
+      std::filesystem::path(section.source_name()).parent_path() / section.string("scene");
+  const std::string kept = section.has("scene_text") ? section.string("scene_text") : "";
+  if (!kept.empty()) return {fmt::format("{} (scene_text)", section.string("scene")), kept};
+  return {path.string(), scene::read_scene(path).resolved_toml};
+}
+
+/// The number that a member of a family has in place of the problem's own.
+struct Variation {
+  std::string parameter;
+  double value = 0.0;
+};
+
 StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
-                          std::vector<std::string>& warnings) {
+                          std::vector<std::string>& warnings,
+                          const std::optional<Variation>& variation = {}) {
   StudyProblem entry;
   if (section.has("scene") == section.has("name")) {
     throw InputError(fmt::format("{}: found {} of \"name\" and \"scene\", expected exactly one",
                                  section.where(), section.has("name") ? "both" : "none"));
   }
   if (section.has("scene")) {
-    const std::filesystem::path path =
-        std::filesystem::path(section.source_name()).parent_path() / section.string("scene");
     const double t_end = section.positive_number("t_end");
+    const std::string stem = std::filesystem::path(section.string("scene")).stem().string();
     try {
-      scene::Scene scene = scene::read_scene(path);
+      SceneText given = scene_text_of(section);
+      const std::string& kept = section.string_or("scene_text", given.text);
+      if (variation) {
+        const TomlAssignment assignment{variation->parameter, variation->value};
+        given.text = toml_with(kept, given.name, {assignment});
+        given.name += fmt::format(" with {}", assignment.text());
+      }
+      scene::Scene scene = scene::parse_scene(given.text, given.name);
       warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
       entry.scene_toml = scene.resolved_toml;
-      entry.problem = problem_from_scene(std::move(scene), path.stem().string(), t_end);
+      entry.problem = problem_from_scene(std::move(scene), stem, t_end);
     } catch (const InputError& error) {
       section.fail("scene", error.what());
     }
-    entry.label = section.string_or("label", path.stem().string());
+    entry.label = section.string_or("label", stem);
     entry.identity = entry.scene_toml;
   } else {
     const std::string name = section.string("name");
-    const ProblemParameters parameters = read_parameters(section);
+    ProblemParameters parameters = read_parameters(section);
+    if (variation) parameters[variation->parameter] = variation->value;
     try {
       entry.problem = catalog.problem(name, parameters);
     } catch (const InputError& error) {
@@ -147,6 +179,54 @@ std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog&
     throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
   }
   return problems;
+}
+
+namespace {
+
+std::vector<double> read_values(const CheckedTable& vary) {
+  if (vary.has("values")) {
+    std::vector<double> values = vary.numbers("values");
+    if (values.empty()) vary.fail("values", "found an empty list, expected at least one number");
+    return values;
+  }
+  const double from = vary.positive_number("from"), to = vary.positive_number("to");
+  const std::int64_t count = vary.integer("count", 2, 10'000);
+  std::vector<double> values;
+  for (std::int64_t k = 0; k < count; ++k) {
+    values.push_back(from * std::pow(to / from, static_cast<double>(k) / static_cast<double>(count - 1)));
+  }
+  values.back() = to;
+  return values;
+}
+
+}  // namespace
+
+std::vector<ProblemFamily> read_problem_families(const CheckedTable& spec, const Catalog& catalog,
+                                                 std::vector<std::string>& warnings) {
+  std::vector<ProblemFamily> families;
+  for (const CheckedTable& section : spec.tables("problem")) {
+    ProblemFamily& family = families.emplace_back();
+    if (!section.has("vary")) {
+      family.members.push_back(read_problem(section, catalog, warnings));
+      family.label = family.members.front().label;
+      family.values.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const CheckedTable vary = section.table("vary");
+    family.parameter = vary.string("parameter");
+    family.values = read_values(vary);
+    const std::string key = family.parameter.substr(family.parameter.find_last_of('.') + 1);
+    for (const double value : family.values) {
+      StudyProblem& member = family.members.emplace_back(
+          read_problem(section, catalog, warnings, Variation{family.parameter, value}));
+      family.label = member.label;
+      member.label += fmt::format("-{}={:.6g}", key, value);
+    }
+  }
+  if (families.empty()) {
+    throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
+  }
+  return families;
 }
 
 std::vector<std::string> read_method_patterns(const CheckedTable& spec, const Catalog& catalog) {
