@@ -4,12 +4,15 @@
 #include "study/convergence.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
+#include "study/stiffness.hpp"
+#include "study/work_precision.hpp"
 
 namespace fw::catalog {
 
 const std::vector<study::StudyKind>& study_kinds() {
-  static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::agreement_kind(),
-                                                     study::linear_solver_kind(), study::simulate_kind()};
+  static const std::vector<study::StudyKind> list = {study::convergence_kind(),    study::agreement_kind(),
+                                                     study::linear_solver_kind(),  study::simulate_kind(),
+                                                     study::work_precision_kind(), study::stiffness_kind()};
   return list;
 }
 

@@ -149,7 +149,9 @@ StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& o
   }
   run.work();
   for (std::thread& thread : threads) thread.join();
-  return run.result();
+  StudyResult study = run.result();
+  if (plan.conclude) plan.conclude(study);
+  return study;
 }
 
 }  // namespace fw::study
