@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "schemes/multistep_properties.hpp"
 #include "schemes/stability_function.hpp"
 
 namespace fw::analysis {
@@ -23,6 +24,8 @@ constexpr int most_terms = 12;
 constexpr double far_out = -1e5, farther_out = -1e6;
 /// Smaller than what the coefficients of the literature (16 digits at least) leave of a zero.
 constexpr double negligible = 1e-13;
+/// By how much the leading term has to be above all others for one power of h to be seen.
+constexpr double dominance = 10.0;
 
 /// What the error of a step depends on.
 struct StageData {
@@ -114,6 +117,22 @@ double local_coefficient(const StageData& data, int k, double z_value) {
   return static_cast<double>(sum);
 }
 
+/// The local error C h^{p+1} φ^{(p+1)} is divided by α_k − zβ_k; where σ has no other root than zero, nothing
+/// adds up.
+StiffOrder stiff_order(const schemes::MultistepFormula& formula) {
+  StiffOrder result;
+  for (std::size_t j = 0; j + 1 < formula.beta.size(); ++j) {
+    if (formula.beta[j].value() == 0) continue;
+    result.reason = "a multistep formula that is no backward differentiation formula";
+    return result;
+  }
+  result.order = schemes::order_of_accuracy(formula);
+  result.power_of_step = result.order + 1;
+  result.power_of_product = 1;
+  result.valid = true;
+  return result;
+}
+
 }  // namespace
 
 std::string StiffOrder::formula() const {
@@ -125,10 +144,11 @@ std::string StiffOrder::formula() const {
 }
 
 StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lambda) {
+  if (const auto* formula = std::get_if<schemes::MultistepFormula>(&data)) return stiff_order(*formula);
   StiffOrder result;
   const std::optional<StageData> stages = stage_data(data);
   if (!stages) {
-    result.reason = "no Runge-Kutta or Rosenbrock coefficients";
+    result.reason = "no coefficients of a Runge-Kutta, Rosenbrock or multistep scheme";
     return result;
   }
   const schemes::StabilityFunction R =
@@ -146,7 +166,7 @@ StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lamb
     result.reason = fmt::format("|R(infinity)| = {:.4g}: errors grow", std::abs(at_infinity));
     return result;
   }
-  double largest = 0.0, factor = 1.0;
+  double largest = 0.0, second = 0.0, factor = 1.0;
   for (int k = 1; k <= most_terms; ++k) {
     factor *= step / k;
     const double near = std::abs(local_coefficient(*stages, k, far_out));
@@ -154,13 +174,21 @@ StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lamb
     if (near < negligible || far < negligible) continue;
     const auto power = static_cast<int>(std::lround(std::log10(near / far)));
     const double size = factor * std::abs(local_coefficient(*stages, k, step * lambda));
-    if (size <= largest) continue;
+    if (size <= largest) {
+      second = std::max(second, size);
+      continue;
+    }
+    second = largest;
     largest = size;
     result.power_of_step = k;
     result.power_of_product = power;
   }
   if (result.power_of_step == 0) {
     result.reason = "no term of the local error was found";
+    return result;
+  }
+  if (largest < dominance * second) {
+    result.reason = "two terms of the local error compete";
     return result;
   }
   result.accumulates = std::abs(at_infinity - 1.0) < 1e-9;

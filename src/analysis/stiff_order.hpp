@@ -24,8 +24,9 @@ struct StiffOrder {
   std::string formula() const;
 };
 
-/// From the coefficients alone, for Runge–Kutta and Rosenbrock schemes. A step from the exact value has the
-/// error Σ_k C_k(z) h^k φ^{(k)}/k! with z = hλ and
+/// From the coefficients alone, for Runge–Kutta and Rosenbrock schemes (and backward differentiation
+/// formulas, where it is h^p/λ). It is not valid where the leading term is not ten times the next one. A step
+/// from the exact value has the error Σ_k C_k(z) h^k φ^{(k)}/k! with z = hλ and
 ///   C_k(z) = bᵀ (I − zB)^{−1} (k α^{k−1} − z α^k − δ_{k1} z γ + 2 δ_{k2} γ) − 1,
 /// B = A, α = c, γ = 0 for Runge–Kutta and B = (α_ij + γ_ij) for Rosenbrock schemes. With C_k ~ z^{−m_k}
 /// (numerically, in binary128, far out), the leading term is the one that is largest at the step and λ given.

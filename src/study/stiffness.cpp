@@ -42,6 +42,7 @@ StiffnessSettings read_settings(const CheckedTable& spec, bool quick) {
   positive("smallest_tolerance", settings.smallest_tolerance);
   settings.tolerance_ratio = ratio_above_one(table, "tolerance_ratio", settings.tolerance_ratio);
   positive("absolute_over_relative", settings.absolute_over_relative);
+  settings.fit_range = ratio_above_one(table, "fit_range", settings.fit_range);
   positive("exponent_tolerance", settings.exponent_tolerance);
   settings.cost_uncertainty = ratio_above_one(table, "cost_uncertainty", settings.cost_uncertainty);
   read_costs(table.table_or_empty("operation_costs"), settings.costs);
@@ -105,7 +106,7 @@ void read_stiffness(const CheckedTable& spec, const Catalog& catalog, bool quick
   const std::string reference = table.choice_or("reference", "binary64", {"binary128", "binary64"});
   const ReferenceArithmetic arithmetic =
       reference == "binary128" ? ReferenceArithmetic::binary128 : ReferenceArithmetic::binary64;
-  const std::int64_t quick_values = spec.table_or_empty("quick").integer_or("values", 5, 2);
+  const std::int64_t quick_values = spec.table_or_empty("quick").integer_or("values", 7, 2);
   std::vector<std::shared_ptr<const StiffnessMethod>> methods;
   for (const std::string& call : read_method_patterns(spec, catalog)) {
     methods.push_back(std::make_shared<const StiffnessMethod>(

@@ -23,6 +23,7 @@ struct StiffnessSettings {
   double smallest_tolerance = 1e-10;
   double tolerance_ratio = 2.0;
   double absolute_over_relative = 1e-2;
+  double fit_range = 10.0;  ///< the exponent is fitted where |λ| is at most this factor below its largest
   double exponent_tolerance = 0.1;  ///< |exponent − 1| of steps over |λ| that still holds
   double cost_uncertainty = 2.0;    ///< factor by which the declared operation costs may be off
   OperationCosts costs;

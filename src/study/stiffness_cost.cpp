@@ -16,6 +16,8 @@ namespace fw::study {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+/// For eigenvalues that are a whole range apart but for rounding.
+constexpr double range_slack = 1.02;
 
 /// The cheapest run found that reaches the target on one member, or why there is none.
 struct Found {
@@ -29,6 +31,14 @@ struct Found {
   Timing timing;
   std::string status = "success";
 };
+
+/// Of the finite ones.
+double median(std::vector<double> samples) {
+  std::erase_if(samples, [](double sample) { return !std::isfinite(sample); });
+  if (samples.empty()) return none;
+  std::sort(samples.begin(), samples.end());
+  return samples[samples.size() / 2];
+}
 
 class CostCase {
  public:
@@ -146,6 +156,20 @@ class CostCase {
     return static_cast<double>(found.work.accepted_steps + found.work.rejected_steps);
   }
 
+  /// "explicit": without Jacobians; "exponential": with Jacobians, but no equations to solve; "implicit". A
+  /// multistep formula that is iterated without a Jacobian, as in Adams codes, is limited like an explicit
+  /// one.
+  std::string stepping() const {
+    bool uses_jacobian = found_.empty() && !info().is_explicit;
+    for (const Found& found : found_) {
+      uses_jacobian = uses_jacobian || found.work.jacobian_evaluations + found.work.jacobian_products +
+                                               found.work.factorisations + found.work.linear_solves >
+                                           0;
+    }
+    if (!uses_jacobian) return "explicit";
+    return info().is_explicit ? "exponential" : "implicit";
+  }
+
   /// Whether a bounded stability interval on the imaginary axis limits the step, as far as coefficients tell.
   bool is_limited_by_stability() const {
     if (!info().is_explicit || std::holds_alternative<std::monostate>(method_.data)) return false;
@@ -156,27 +180,33 @@ class CostCase {
   }
 
   CaseResult judge() {
-    // The stiffest half of the members, where stability rather than accuracy limits an explicit step.
-    const std::size_t first = found_.size() / 2;
+    // The stiffest members, where stability rather than accuracy limits an explicit step.
+    double most = 0.0;
+    for (const Found& found : found_) {
+      if (std::isfinite(found.largest_eigenvalue)) most = std::max(most, found.largest_eigenvalue);
+    }
     std::vector<double> eigenvalues, steps;
-    for (std::size_t k = first; k < found_.size(); ++k) {
-      if (!found_[k].reached) continue;
-      eigenvalues.push_back(found_[k].largest_eigenvalue);
+    double last_product = none;
+    for (std::size_t k = 0; k < found_.size(); ++k) {
+      const double eigenvalue = found_[k].largest_eigenvalue;
+      if (!found_[k].reached || !(eigenvalue * settings_.fit_range * range_slack >= most)) continue;
+      eigenvalues.push_back(eigenvalue);
       steps.push_back(steps_of(found_[k]));
+      if (eigenvalue == most) {
+        const Ivp& ivp = family_.members[k]->ivp();
+        last_product = (ivp.t1 - ivp.t0) / steps.back() * eigenvalue;
+      }
     }
     const auto reached =
         std::count_if(found_.begin(), found_.end(), [](const Found& f) { return f.reached; });
     const std::string coverage =
         fmt::format("error {:g} reached at {} of {} values", settings_.target_error, reached, found_.size());
-    if (eigenvalues.size() < 4) {
-      return conclude(Verdict::not_applicable,
-                      fmt::format("{}; {} of them in the stiffest half, expected at least 4 for an exponent",
-                                  coverage, eigenvalues.size()));
-    }
     law_ = analysis::fit_power_law(eigenvalues, steps);
     if (!law_.valid) return conclude(Verdict::not_applicable, coverage + "; " + law_.reason);
-    const std::string found = fmt::format("{}; steps ~ |lambda|^{:.3f} [{:.3f}, {:.3f}] in the stiffest half",
-                                          coverage, law_.exponent, law_.exponent_low, law_.exponent_high);
+    const std::string found = fmt::format(
+        "{}; steps ~ |lambda|^{:.3f} [{:.3f}, {:.3f}] over the largest {} values, mean h|lambda| = {:.3g} at "
+        "the last",
+        coverage, law_.exponent, law_.exponent_low, law_.exponent_high, law_.points, last_product);
     if (!is_limited_by_stability()) return conclude(Verdict::not_applicable, found);
     const bool holds = std::abs(law_.exponent - 1.0) <= settings_.exponent_tolerance;
     return conclude(holds ? Verdict::holds : Verdict::fails,
@@ -192,7 +222,7 @@ class CostCase {
     StiffnessRow row{.problem = family_.label,
                      .method = method_.call,
                      .measure = measures_cost,
-                     .stepping = info().is_explicit ? "explicit" : "implicit",
+                     .stepping = stepping(),
                      .parameter = family_.parameter,
                      .classical_order = info().order};
     row.points = static_cast<std::int64_t>(
@@ -227,11 +257,7 @@ class CostCase {
       seconds.push_back(found.reached ? found.timing.minimum : none);
       std::vector<double> taken = found.timing.samples;
       taken.resize(static_cast<std::size_t>(settings_.timing.repetitions), none);
-      double slowest = found.timing.minimum;
-      for (const double sample : taken) {
-        if (std::isfinite(sample)) slowest = std::max(slowest, sample);
-      }
-      seconds_spread.push_back(found.reached ? found.bracket * slowest / found.timing.minimum : none);
+      seconds_spread.push_back(found.reached ? found.bracket * median(taken) / found.timing.minimum : none);
       samples.insert(samples.end(), taken.begin(), taken.end());
     }
     result.columns = {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},

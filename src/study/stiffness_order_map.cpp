@@ -98,14 +98,11 @@ class OrderMap {
     return order;
   }
 
-  void fit_nonstiff() {
-    for (const std::size_t k : by_stiffness()) {
-      nonstiff_ = fit_row(rows_[k], 0.0, settings_.nonstiff_product);
-      if (nonstiff_.valid) return;
-    }
-  }
+  /// On the least stiff row alone: on others, steps with small h|λ| may be few or not asymptotic.
+  void fit_nonstiff() { nonstiff_ = fit_row(rows_[by_stiffness().front()], 0.0, settings_.nonstiff_product); }
 
-  /// The stiffest row with enough points above the floor; the theory for the steps that it used.
+  /// The stiffest row with enough points above the floor (or why the stiffest has not); the theory for the
+  /// steps that it used.
   void fit_stiff() {
     if (info().is_explicit && !info().is_a_stable) {
       prediction_.reason = "the scheme is explicit";
@@ -125,7 +122,9 @@ class OrderMap {
               lowest, std::sqrt(accumulation_margin * length * row.largest_eigenvalue / prediction_.memory));
         }
       }
-      stiff_ = fit_row(row, lowest, std::numeric_limits<double>::infinity());
+      analysis::OrderFit fit = fit_row(row, lowest, std::numeric_limits<double>::infinity());
+      const bool is_first = k == order.front();
+      if (is_first || fit.valid) stiff_ = std::move(fit);
       if (stiff_.valid) {
         stiff_value_ = family_.values[k];
         return;

@@ -8,9 +8,9 @@ std::string StiffnessSettings::text() const {
   return fmt::format(
              "target_error = {}\nfewest_steps = {}\nmax_evaluations = {}\nbracket = {}\nfirst_tolerance = "
              "{}\nsmallest_tolerance = {}\ntolerance_ratio = {}\nabsolute_over_relative = "
-             "{}\nexponent_tolerance = {}\ncost_uncertainty = {}\n",
+             "{}\nfit_range = {}\nexponent_tolerance = {}\ncost_uncertainty = {}\n",
              target_error, fewest_steps, max_evaluations, bracket, first_tolerance, smallest_tolerance,
-             tolerance_ratio, absolute_over_relative, exponent_tolerance, cost_uncertainty) +
+             tolerance_ratio, absolute_over_relative, fit_range, exponent_tolerance, cost_uncertainty) +
          fmt::format(
              "jacobian = {}\njacobian_product = {}\nfactorisation = {}\nlinear_solve = {}\nlinear_iteration "
              "= {}\nrepetitions = {}\nshortest_sample = {}\nlongest_timing = {}\n",
