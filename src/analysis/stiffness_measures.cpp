@@ -4,7 +4,19 @@
 #include <cmath>
 #include <limits>
 
+#include "linalg/extreme_eigenvalues.hpp"
+
 namespace fw::analysis {
+
+double spectral_radius(const OdeSystem& system, double t, ConstVectorRef y) {
+  constexpr Index largest_dense = 200;
+  if (system.size() <= largest_dense) return stiffness_measures(system, t, y).largest_eigenvalue;
+  SparseMatrix J = system.jacobian_pattern();
+  system.jacobian(t, y, J);
+  const linalg::ExtremeEigenvalues extreme = linalg::extreme_eigenvalues(J, {.tolerance = 1e-4});
+  if (!extreme.status.ok() || extreme.values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return std::abs(extreme.values.front());
+}
 
 StiffnessMeasures stiffness_measures(const OdeSystem& system, double t, ConstVectorRef y) {
   SparseMatrix J = system.jacobian_pattern();

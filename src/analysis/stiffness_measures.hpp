@@ -14,6 +14,10 @@ struct StiffnessMeasures {
   double eigenvalue_ratio = 0.0;  ///< max |λ|/min |λ|: the spread of time scales, also without damping
 };
 
+/// max |λ| of the Jacobian alone [1/s]: by a dense solver up to 200 unknowns, beyond by a Krylov iteration to
+/// 1e-4; NaN where that does not converge.
+double spectral_radius(const OdeSystem& system, double t, ConstVectorRef y);
+
 /// By a dense eigenvalue solver, O(N³).
 StiffnessMeasures stiffness_measures(const OdeSystem& system, double t, ConstVectorRef y);
 

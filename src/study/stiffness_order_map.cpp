@@ -127,8 +127,27 @@ class OrderMap {
       if (is_first || fit.valid) stiff_ = std::move(fit);
       if (stiff_.valid) {
         stiff_value_ = family_.values[k];
+        if (family_.is_prothero_robinson) predict_over(row);
         return;
       }
+    }
+  }
+
+  /// The prediction for the steps of the fit: valid if the same term leads at the coarsest and the finest.
+  void predict_over(const MapRow& row) {
+    std::vector<double> used;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const bool is_stiff = steps_[k] * row.largest_eigenvalue >= settings_.stiff_product;
+      if (row.used[k] != 0 && is_stiff) used.push_back(steps_[k]);
+    }
+    const analysis::StiffOrder coarse =
+        analysis::stiff_order(method_.data, used.front(), -row.largest_eigenvalue);
+    prediction_ = analysis::stiff_order(method_.data, used.back(), -row.largest_eigenvalue);
+    if (!coarse.valid) {
+      prediction_ = coarse;
+    } else if (prediction_.valid && prediction_.power_of_step != coarse.power_of_step) {
+      prediction_.valid = false;
+      prediction_.reason = "another term of the local error leads at small steps than at large ones";
     }
   }
 

@@ -44,7 +44,8 @@ Cheapest cheapest_of(const std::vector<const CaseResult*>& cases, const std::str
 /// Adds the cheapest curves by one measure of cost and their crossing; returns it in words.
 std::string cross(CaseResult& overview, const std::vector<const CaseResult*>& cases, const std::string& cost,
                   const std::string& unit, const std::string& name) {
-  const std::vector<double> values = numbers_of(overview, "parameter");
+  std::vector<double> values = numbers_of(overview, "parameter");
+  for (double& value : values) value = std::abs(value);  // a decay rate may be negative
   const Cheapest plain = cheapest_of(cases, "explicit", cost, values.size());
   const Cheapest implicit = cheapest_of(cases, "implicit", cost, values.size());
   for (const auto& [stepping, curve] : {std::pair{"explicit", &plain}, {"implicit", &implicit}}) {

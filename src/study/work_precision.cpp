@@ -33,6 +33,7 @@ WorkPrecisionSettings read_settings(const CheckedTable& spec, bool quick) {
   settings.max_evaluations =
       table.integer_or("max_evaluations", settings.max_evaluations, 100, 10'000'000'000);
   positive("target_error", settings.target_error);
+  positive("fit_error", settings.fit_error);
   positive("tolerance", settings.tolerance);
   settings.timing.repetitions = table.integer_or("repetitions", settings.timing.repetitions, 1, 1000);
   positive("shortest_sample", settings.timing.shortest_sample);

@@ -9,6 +9,7 @@
 
 #include "analysis/efficiency.hpp"
 #include "analysis/order_fit.hpp"
+#include "analysis/stiffness_measures.hpp"
 #include "study/error_meter.hpp"
 #include "study/work_columns.hpp"
 
@@ -21,6 +22,8 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double slope_tolerance = 0.1;
 /// Evaluations per step count as constant where the largest is at most this much above the smallest.
 constexpr double constant_work = 1.05;
+/// h|λ| above which a step does not resolve the fastest motion.
+constexpr double largest_resolved_product = 1.0;
 
 /// One run of the ladder.
 struct Rung {
@@ -172,6 +175,15 @@ class Ladder {
     return most / least;
   }
 
+  /// h|λ| of the largest step in the fit, with the Jacobian's spectral radius at the start.
+  double largest_product() const {
+    double step = 0.0;
+    for (std::size_t k = 0; k < rungs_.size(); ++k) {
+      if (fit_.used[k] != 0) step = std::max(step, rungs_[k].control);
+    }
+    return step * analysis::spectral_radius(*ivp().system, ivp().t0, ivp().y0);
+  }
+
   CaseResult judge() {
     if (rungs_.empty()) {
       return conclude(fmt::format("no run within {} right-hand sides has a relative error below {:g}: {}",
@@ -180,7 +192,7 @@ class Ladder {
     std::vector<double> inverse_work, errors;
     for (const Rung& rung : rungs_) {
       inverse_work.push_back(1.0 / evaluations_of(rung));
-      errors.push_back(rung.error);
+      errors.push_back(rung.error <= settings_.fit_error ? rung.error : none);
     }
     fit_ = analysis::fit_order(inverse_work, errors, meter_->floor(), slope_tolerance);
     if (!fit_.valid) return conclude(fmt::format("no efficiency order: {}", fit_.reason));
@@ -195,6 +207,12 @@ class Ladder {
           fmt::format("{}; evaluations per step vary by a factor of {:.2f}, for which theory predicts no "
                       "exact power",
                       found, spread));
+    }
+    const double product = largest_product();
+    if (!(product <= largest_resolved_product)) {
+      return conclude(fmt::format(
+          "{}; h|lambda| is up to {:.3g} in the fit, and theory predicts a power for small steps only", found,
+          product));
     }
     const bool holds = std::abs(fit_.order - static_cast<double>(expected_order())) <= settings_.tolerance;
     return conclude(fmt::format("{}, predicted {} within {:g}", found, expected_order(), settings_.tolerance),
@@ -265,9 +283,10 @@ std::string WorkPrecisionSettings::text() const {
   return fmt::format(
       "levels = {}\nstep_ratio = {}\ntolerance_ratio = {}\nfewest_steps = {}\nstart_error = {}\nfinest_error "
       "= {}\nfirst_tolerance = {}\nsmallest_tolerance = {}\nabsolute_over_relative = {}\nmax_evaluations = "
-      "{}\ntarget_error = {}\ntolerance = {}\nrepetitions = {}\nshortest_sample = {}\nlongest_timing = {}\n",
+      "{}\ntarget_error = {}\nfit_error = {}\ntolerance = {}\nrepetitions = {}\nshortest_sample = "
+      "{}\nlongest_timing = {}\n",
       levels, step_ratio, tolerance_ratio, fewest_steps, start_error, finest_error, first_tolerance,
-      smallest_tolerance, absolute_over_relative, max_evaluations, target_error, tolerance,
+      smallest_tolerance, absolute_over_relative, max_evaluations, target_error, fit_error, tolerance,
       timing.repetitions, timing.shortest_sample, timing.longest_total);
 }
 
@@ -281,7 +300,7 @@ CaseResult run_work_precision(const WorkPrecisionSpec& spec, const RunContext& c
 
 CaseResult empty_front(const StudyProblem& problem) {
   CaseResult result;
-  result.reason = "no ladder of the problem is finished";
+  result.reason = "the fronts are drawn at the end of the study";
   add_summary(result, {.problem = problem.label, .method = front_method, .family = "", .control = ""});
   return result;
 }
