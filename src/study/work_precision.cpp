@@ -32,6 +32,8 @@ WorkPrecisionSettings read_settings(const CheckedTable& spec, bool quick) {
   positive("absolute_over_relative", settings.absolute_over_relative);
   settings.max_evaluations =
       table.integer_or("max_evaluations", settings.max_evaluations, 100, 10'000'000'000);
+  settings.max_factorisations =
+      table.integer_or("max_factorisations", settings.max_factorisations, 1, 10'000'000'000);
   positive("target_error", settings.target_error);
   positive("fit_error", settings.fit_error);
   positive("tolerance", settings.tolerance);

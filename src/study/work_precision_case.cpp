@@ -113,6 +113,12 @@ class Ladder {
     rungs_.push_back(std::move(rung));
   }
 
+  /// Whether another rung, with `factor` times the work, is not wanted.
+  bool is_top(double factor) const {
+    const double factorisations = static_cast<double>(rungs_.back().work.factorisations);
+    return is_fine_enough() || factor * factorisations > static_cast<double>(settings_.max_factorisations);
+  }
+
   bool is_fine_enough() const {
     return rungs_.back().error < std::max(settings_.finest_error, meter_->floor());
   }
@@ -142,7 +148,7 @@ class Ladder {
       if (!rung) continue;
       if (rung->work.rhs_evaluations > static_cast<std::uint64_t>(settings_.max_evaluations)) break;
       keep(std::move(*rung), control);
-      if (is_fine_enough()) break;
+      if (is_top(settings_.step_ratio)) break;
     }
   }
 
@@ -159,7 +165,7 @@ class Ladder {
       if (!rung) continue;
       if (rung->work.rhs_evaluations > static_cast<std::uint64_t>(settings_.max_evaluations)) break;
       keep(std::move(*rung), control);
-      if (is_fine_enough()) break;
+      if (is_top(1.0)) break;
     }
   }
 
@@ -283,11 +289,12 @@ std::string WorkPrecisionSettings::text() const {
   return fmt::format(
       "levels = {}\nstep_ratio = {}\ntolerance_ratio = {}\nfewest_steps = {}\nstart_error = {}\nfinest_error "
       "= {}\nfirst_tolerance = {}\nsmallest_tolerance = {}\nabsolute_over_relative = {}\nmax_evaluations = "
-      "{}\ntarget_error = {}\nfit_error = {}\ntolerance = {}\nrepetitions = {}\nshortest_sample = "
+      "{}\nmax_factorisations = {}\ntarget_error = {}\nfit_error = {}\ntolerance = {}\nrepetitions = "
+      "{}\nshortest_sample = "
       "{}\nlongest_timing = {}\n",
       levels, step_ratio, tolerance_ratio, fewest_steps, start_error, finest_error, first_tolerance,
-      smallest_tolerance, absolute_over_relative, max_evaluations, target_error, fit_error, tolerance,
-      timing.repetitions, timing.shortest_sample, timing.longest_total);
+      smallest_tolerance, absolute_over_relative, max_evaluations, max_factorisations, target_error,
+      fit_error, tolerance, timing.repetitions, timing.shortest_sample, timing.longest_total);
 }
 
 std::string to_string(LadderControl control) {

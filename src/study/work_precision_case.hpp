@@ -19,11 +19,12 @@ struct WorkPrecisionSettings {
   double finest_error = 1e-12;    ///< a ladder ends below
   double first_tolerance = 1e-2;  ///< relative
   double smallest_tolerance = 1e-13;
-  double absolute_over_relative = 1e-2;   ///< absolute tolerance in units of the relative one
-  std::int64_t max_evaluations = 50'000;  ///< right-hand sides of a run
-  double target_error = 1e-4;             ///< relative: at which costs are compared
-  double fit_error = 3e-3;                ///< relative: larger errors are no part of the fit
-  double tolerance = 0.15;                ///< |efficiency order − order| that still holds
+  double absolute_over_relative = 1e-2;      ///< absolute tolerance in units of the relative one
+  std::int64_t max_evaluations = 50'000;     ///< right-hand sides of a run
+  std::int64_t max_factorisations = 20'000;  ///< of a run; a ladder ends where the next one would need more
+  double target_error = 1e-4;                ///< relative: at which costs are compared
+  double fit_error = 3e-3;                   ///< relative: larger errors are no part of the fit
+  double tolerance = 0.15;                   ///< |efficiency order − order| that still holds
   TimingRule timing;
 
   std::string text() const;
