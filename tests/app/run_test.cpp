@@ -216,7 +216,7 @@ TEST_F(Run, ReportsWhatDiffersInARepetition) {
   write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
   ASSERT_EQ(run_study("r").exit_code, 0);
   inspect(
-      "import h5py\np = f.filename\nf.close()\nf = h5py.File(p, 'r+')\n"
+      "import h5py\np = f.filename\nf.close()\ng.close()\nf = h5py.File(p, 'r+')\n"
       "f['cases/rotation-rk4/error'][2] *= 1.5\nf.close()\n",
       {file("r/s.h5")});
   const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});

@@ -107,7 +107,7 @@ TEST(Sweep, RefusesMistakesOfItsOwnAndOfTheInnerStudy) {
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = []\n" + inner, "empty list");
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = [1]\nunits = 's'\n" + inner,
           "unknown key \"units\"");
-  refuses(head + stiffness + "[study]\nkind = 'sweep'\n", "found \"sweep\"");
+  refuses(head + "[[parameter]]\npath = 'title'\nvalues = ['x']\n[study]\nkind = 'sweep'\n", "\"sweep\"");
 }
 
 /// A scene file in the current directory of the test.
