@@ -142,8 +142,8 @@ def draw_orders(result, problem):
             axis.tick_params(labelbottom=True)
         if index % COLUMNS == 0:
             axis.set_ylabel(label("largest |λ|", "1/s"))
-    bar = figure.colorbar(mesh, ax=axes, ticks=numpy.arange(0, 9), shrink=0.9, pad=0.01)
-    bar.set_label("order between two steps, h to h/2 (predicted in brackets; dashed: h|λ| = 1; grey: none)")
+    bar = figure.colorbar(mesh, ax=axes, ticks=numpy.arange(0, 9), shrink=min(1.0, 2.0 / lines), pad=0.01)
+    bar.set_label("order from step 2h to h\nbrackets: predicted, dashed: h|λ| = 1\ngrey: no error above rounding")
     return figure
 
 

@@ -307,6 +307,13 @@ CaseResult run_work_precision(const WorkPrecisionSpec& spec, const RunContext& c
 
 CaseResult empty_front(const StudyProblem& problem) {
   CaseResult result;
+  for (const auto& [name, unit] : {std::pair{"rhs_evaluations", "1"}, {"seconds", "s"}}) {
+    const std::string prefix = std::string("front_") + name;
+    result.columns.push_back({prefix, unit, std::vector<double>{}, {}, {}});
+    result.columns.push_back({prefix + "_error", "1", std::vector<double>{}, {}, {}});
+    result.columns.push_back({prefix + "_method", "", std::vector<std::string>{}, {}, {}});
+    result.columns.push_back({prefix + "_control", "", std::vector<std::string>{}, {}, {}});
+  }
   result.reason = "the fronts are drawn at the end of the study";
   add_summary(result, {.problem = problem.label, .method = front_method, .family = "", .control = ""});
   return result;
