@@ -56,8 +56,8 @@ def draw_cost(result, problem):
                          linestyle=CLASSES[row["stepping"]])
     stiffness, name = axis_of(result, whole)
     steps.loglog(stiffness, result.values("stiffness_index", whole) / 2, color=QUIET, linewidth=5, alpha=0.3)
-    steps.annotate("h|λ| = 2", (stiffness[1], result.values("stiffness_index", whole)[1] / 2), color=QUIET,
-                   xytext=(6, -14), textcoords="offset points", fontsize=10)
+    steps.annotate("h|λ| = 2", (stiffness[-2], result.values("stiffness_index", whole)[-2] / 2), color=QUIET,
+                   xytext=(8, -18), textcoords="offset points", fontsize=10)
     steps.set_title(f"{problem}: steps for the target error", loc="left")
     steps.set_ylabel("steps, accepted and rejected")
     for panel, column, what in ((cost, "cost", "cost [right-hand sides]"), (seconds, "seconds", label("wall-clock time", "s"))):
@@ -143,7 +143,7 @@ def draw_orders(result, problem):
         if index % COLUMNS == 0:
             axis.set_ylabel(label("largest |λ|", "1/s"))
     bar = figure.colorbar(mesh, ax=axes, ticks=numpy.arange(0, 9), shrink=min(1.0, 2.0 / lines), pad=0.01)
-    bar.set_label("order from step 2h to h\nbrackets: predicted, dashed: h|λ| = 1\ngrey: no error above rounding")
+    bar.set_label("order from step 2h to h\nbrackets: predicted, dashed: h|λ| = 1\ngrey: no error above rounding", labelpad=10, fontsize=10)
     return figure
 
 

@@ -52,15 +52,16 @@ void bound(const Vector& difference, const Vector& state, Index first, Index cou
 }  // namespace
 
 ReferenceSolution binary64_reference(const Ivp& ivp, const std::function<bool()>& is_interrupted) {
+  // Tighter tolerances drown in rounding where springs are stiff: h (k/m) x eps is the noise of a step.
   // Their order conditions take longer than many a run.
   static const std::unique_ptr<Integrator> fine_method = make("dormand_prince_853");
   static const std::unique_ptr<Integrator> coarse_method = make("verner_87");
   ReferenceSolution reference;
-  const Solution fine = solve(ivp, *fine_method, 1e-12, is_interrupted);
+  const Solution fine = solve(ivp, *fine_method, 1e-11, is_interrupted);
   reference.work = fine.work;
   reference.status = fine.status;
   if (!fine.status.ok()) return reference;
-  const Solution coarse = solve(ivp, *coarse_method, 1e-11, is_interrupted);
+  const Solution coarse = solve(ivp, *coarse_method, 1e-10, is_interrupted);
   reference.work.rhs_evaluations += coarse.work.rhs_evaluations;
   reference.work.seconds += coarse.work.seconds;
   reference.status = coarse.status;

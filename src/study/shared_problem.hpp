@@ -11,7 +11,7 @@ namespace fw::study {
 /// In which arithmetic a reference without closed form is computed.
 enum class ReferenceArithmetic {
   binary128,  ///< certified, about 19 digits
-  binary64,   ///< by two methods in double, about 10 digits: for systems too large for the other
+  binary64,   ///< by two methods in double, about 9 digits: for systems too large for the other
 };
 
 /// A problem that several cases share, with its end state in closed form or as a certified reference, which

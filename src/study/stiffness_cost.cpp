@@ -156,18 +156,19 @@ class CostCase {
     return static_cast<double>(found.work.accepted_steps + found.work.rejected_steps);
   }
 
-  /// "explicit": without Jacobians; "exponential": with Jacobians, but no equations to solve; "implicit". A
-  /// multistep formula that is iterated without a Jacobian, as in Adams codes, is limited like an explicit
-  /// one.
+  /// "implicit": solves equations with a Jacobian; "exponential": explicit, but A-stable by functions of the
+  /// Jacobian; "explicit": all others. A multistep formula that is iterated without a Jacobian, as in Adams
+  /// codes, is limited like an explicit one; a Verlet scheme stays explicit where a damper needs a solve.
   std::string stepping() const {
-    bool uses_jacobian = found_.empty() && !info().is_explicit;
-    for (const Found& found : found_) {
-      uses_jacobian = uses_jacobian || found.work.jacobian_evaluations + found.work.jacobian_products +
-                                               found.work.factorisations + found.work.linear_solves >
-                                           0;
-    }
-    if (!uses_jacobian) return "explicit";
-    return info().is_explicit ? "exponential" : "implicit";
+    if (info().is_explicit) return info().is_a_stable ? "exponential" : "explicit";
+    const bool uses_jacobian =
+        found_.empty() || std::any_of(found_.begin(), found_.end(), [](const Found& found) {
+          const Work& work = found.work;
+          return work.jacobian_evaluations + work.jacobian_products + work.factorisations +
+                     work.linear_solves >
+                 0;
+        });
+    return uses_jacobian ? "implicit" : "explicit";
   }
 
   /// Whether a bounded stability interval on the imaginary axis limits the step, as far as coefficients tell.
