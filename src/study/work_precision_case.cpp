@@ -23,7 +23,7 @@ constexpr double slope_tolerance = 0.1;
 /// Evaluations per step count as constant where the largest is at most this much above the smallest.
 constexpr double constant_work = 1.05;
 /// h|λ| above which a step does not resolve the fastest motion.
-constexpr double largest_resolved_product = 1.0;
+constexpr double largest_resolved_product = 0.5;
 
 /// One run of the ladder.
 struct Rung {
