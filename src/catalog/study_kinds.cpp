@@ -2,6 +2,7 @@
 
 #include "study/agreement.hpp"
 #include "study/convergence.hpp"
+#include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
 
@@ -9,7 +10,8 @@ namespace fw::catalog {
 
 const std::vector<study::StudyKind>& study_kinds() {
   static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::agreement_kind(),
-                                                     study::linear_solver_kind(), study::simulate_kind()};
+                                                     study::linear_solver_kind(), study::jacobian_kind(),
+                                                     study::simulate_kind()};
   return list;
 }
 
