@@ -9,7 +9,8 @@ import plot_style  # first: it finds a Python with the libraries
 import numpy
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, SymLogNorm
 from matplotlib.patches import Patch
-from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, new_figure
+from matplotlib.ticker import MaxNLocator
+from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, new_figure, number
 
 EPSILON = float(numpy.finfo(float).eps)
 ORDERS = {"forward": 1, "central": 2}
@@ -124,10 +125,10 @@ def draw_printed(result):
 
 def draw_patterns(result):
     """Blocks of the tangent matrices, coloured by their largest entry."""
-    rows = part(result, "pattern")
+    rows = [row for row in part(result, "pattern") if row["filled"] < 0.9]  # full matrices have no pattern
     if not rows:
         return None
-    figure, panels = grid(result, len(rows), 5.0, 4.6)
+    figure, panels = grid(result, len(rows), 5.6, 4.8)
     for panel, row in zip(panels, rows):
         case = result.case_of(row)
         block_row, block_column = (result.values(name, case) for name in ("block_row", "block_column"))
@@ -140,11 +141,14 @@ def draw_patterns(result):
         panel.imshow(empty, cmap=ListedColormap(["#DDDDDD"]))
         finite = image[numpy.isfinite(image)]
         shown = panel.imshow(image, cmap="viridis", norm=LogNorm(finite.min(), max(finite.max(), 1.01 * finite.min())))
-        figure.colorbar(shown, ax=panel, shrink=0.85, label=f"largest entry [{'N/m' if '3x3' in row['variant'] else 'SI'}]")
-        panel.set_title(f"{row['subject']}: {100 * row['filled']:.2g} % filled", loc="left", fontsize=12)
+        figure.colorbar(shown, ax=panel, shrink=0.8, label=f"largest entry [{'N/m' if '3x3' in row['variant'] else 'SI'}]")
+        panel.set_title(f"{row['subject']}: {100 * row['filled']:.0f} % of the entries", loc="left", fontsize=12)
         panel.set_xlabel("block column" if "3x3" in row["variant"] else "column")
         panel.set_ylabel("block row" if "3x3" in row["variant"] else "row")
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(MaxNLocator(integer=True))
         panel.grid(False)
+    figure.suptitle(f"{result.title}\nBlocks of K; grey: zero (fixed particles, or filled in D only)")
     return figure
 
 
@@ -199,7 +203,11 @@ def draw_definiteness(result):
             set_map_axes(panel, models.index(row["variant"]) == 0)
             panel.set_xlim(steps[0], steps[-1])
             panel.set_title(f"{subject}: {MODELS[row['variant']]}", loc="left", fontsize=12)
-        figure.colorbar(image, ax=list(line), label="λ$_{min}$(A) [kg]", shrink=0.9, aspect=14)
+        unit = 10.0 ** numpy.round(numpy.log10(scale))
+        ticks = [-100 * unit, -10 * unit, -unit, 0, unit, 10 * unit, 100 * unit]
+        bar = figure.colorbar(image, ax=list(line), label="λ$_{min}$(A) [kg]", shrink=0.9, aspect=14, ticks=ticks)
+        bar.ax.set_yticklabels([number(tick).replace("-", "−") for tick in ticks])
+        bar.ax.minorticks_off()
     axes[0][0].legend(loc="upper left", fontsize=9.5, frameon=True, framealpha=0.9)
     return figure
 
@@ -242,6 +250,16 @@ def short(call):
     return ", ".join([name] + (chosen or default))
 
 
+def limit_at(result, subject, compression):
+    """The step from which A with the exact K is indefinite at the start, where the study has looked at it."""
+    for row in part(result, "definiteness"):
+        case = result.case_of(row)
+        here = numpy.flatnonzero(result.values("compression", case) == compression)
+        if (row["subject"], row["variant"]) == (subject, "exact") and here.size:
+            return result.values("limit_step", case)[here[0]]
+    return numpy.nan
+
+
 def draw_runs(result):
     """The largest energy gain over the step: a row per problem, a panel per compression."""
     rows = part(result, "runs")
@@ -260,10 +278,17 @@ def draw_runs(result):
                 case = result.case_of(row)
                 step, gain = result.values("step", case), result.values("energy_gain", case)
                 ended = numpy.array([status == "success" for status in result.values("status", case)])
-                style = {"color": PALETTE[index], "marker": MARKERS[index], "markersize": 4.5}
+                # Hollow and of falling size: series that agree show through each other.
+                style = {"color": PALETTE[index], "marker": MARKERS[index], "markersize": 10 - 1.5 * index,
+                         "markerfacecolor": "none"}
                 panel.loglog(step[ended], numpy.maximum(gain[ended], floor), linewidth=1.2, label=short(row["variant"]), **style)
                 panel.loglog(step[~ended], numpy.maximum(gain[~ended], floor), linestyle="none", marker="x",
                              markersize=7, markeredgewidth=1.8, color=PALETTE[index], label=None)
+            limit = limit_at(result, subject, compression)
+            if numpy.isfinite(limit):
+                panel.axvline(limit, color=EXACT, linewidth=1.2, linestyle=":")
+                panel.annotate("A singular at first", (limit, 1), xycoords=("data", "axes fraction"), rotation=90, va="top",
+                               ha="right", fontsize=9.5, xytext=(-3, -4), textcoords="offset points")
             panel.set_title(f"{subject}, compressed to {compression:g}", loc="left", fontsize=12)
             panel.set_xlabel("step h [s]")
             panel.axhline(1.0, color=QUIET, linewidth=1.0)

@@ -189,17 +189,20 @@ void plan_problem_derivatives(const StudyProblem& problem, const DerivativeSpec&
 Squeeze read_squeeze(const CheckedTable& table, std::int64_t seed) {
   return {.closing_rate = table.number_or("closing_rate", 0.0),
           .displacement = table.number_or("displacement", 0.05, NumberRule::nonnegative),
+          .speed = table.number_or("speed", 0.0, NumberRule::nonnegative),
           .seed = seed};
 }
 
 Squeeze scaled(Squeeze squeeze, const StudyProblem& problem) {
-  squeeze.displacement *= typical_length(*problem.problem.ivp.system);
+  const double length = typical_length(*problem.problem.ivp.system);
+  squeeze.displacement *= length;
+  squeeze.speed *= length;
   return squeeze;
 }
 
 std::string squeeze_text(const Squeeze& squeeze) {
-  return fmt::format("closing_rate = {}\ndisplacement = {}\nseed = {}\n", squeeze.closing_rate,
-                     squeeze.displacement, squeeze.seed);
+  return fmt::format("closing_rate = {}\ndisplacement = {}\nspeed = {}\nseed = {}\n", squeeze.closing_rate,
+                     squeeze.displacement, squeeze.speed, squeeze.seed);
 }
 
 void require_springs(const CheckedTable& spec, const std::string& section, const StudyProblem& problem) {

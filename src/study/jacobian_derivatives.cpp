@@ -296,7 +296,7 @@ CaseResult run_pattern(const DerivativeSubject& subject, const RunContext&) {
   CaseResult result;
   result.verdict = missing == 0 ? Verdict::holds : Verdict::fails;
   result.reason = fmt::format(
-      "{} of {} x {} blocks of {} x {}, {:.2g} % of all entries; {} that complex steps "
+      "{} of {} x {} blocks of {} x {}, {:.0f} % of all entries; {} that complex steps "
       "fill are missing",
       block_row.size(), blocks, blocks, block, block, 100.0 * row.filled, missing);
   result.columns = {{"block_row", "1", block_row, {}, {}},

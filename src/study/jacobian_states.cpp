@@ -95,8 +95,9 @@ Ivp squeezed(Ivp ivp, const Squeeze& squeeze) {
   for (Index c = 0; c < n; ++c) {
     const double position = squeeze.compression * (ivp.y0[c] - centre[c % dimensions]);
     ivp.y0[c] = centre[c % dimensions] + position;
+    const double added = random.uniform(-squeeze.speed, squeeze.speed);
     const bool is_fixed = system.fixed()[static_cast<std::size_t>(c)] != 0;
-    ivp.y0[n + c] = is_fixed ? 0.0 : -squeeze.closing_rate * position;
+    ivp.y0[n + c] = is_fixed ? 0.0 : added - squeeze.closing_rate * position;
   }
   ivp.y0_extended.clear();
   return ivp;

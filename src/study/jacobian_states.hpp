@@ -41,6 +41,7 @@ struct Squeeze {
   double compression = 1.0;   ///< factor of all distances from the centre of the positions
   double closing_rate = 0.0;  ///< [1/s]: velocities −rate·(x − centre)
   double displacement = 0.0;  ///< [m]: largest random displacement of a moving component, before squeezing
+  double speed = 0.0;         ///< [m/s]: largest random velocity of a moving component, added
   std::int64_t seed = 0;
 };
 
