@@ -175,6 +175,7 @@ TEST(JacobianStudy, FindsTheStepFromWhichACompressedSystemIsIndefinite) {
     EXPECT_EQ(projected.verdict, Verdict::holds) << projected.reason;
     EXPECT_TRUE(std::isnan(figure(projected, "limit_step")));
     EXPECT_EQ(figure(projected, "cg_failures"), 0.0);
+    EXPECT_EQ(figure(projected, "newton_cg_failures"), figure(projected, "newton_failures"));
   }
 }
 
