@@ -214,9 +214,8 @@ class DefinitenessCase {
         "curvatures where A is definite",
         wrong_limits_, limit_.size(), row.limit_step, row.predicted_limit_step, wrong_curvatures_);
     result.reason = fmt::format(
-        "{}; of {} points Newton fails at {} (at {} with CG), CG fails at {}; "
-        "{:.3g} Newton "
-        "and {:.3g} CG iterations on average",
+        "{}; of {} points Newton fails at {} (at {} with CG), CG fails at {}; {:.3g} "
+        "Newton and {:.3g} CG iterations on average",
         result.verdict == Verdict::holds ? definite : wrong, row.samples, row.newton_failures,
         row.newton_cg_failures, row.cg_failures, row.newton_iterations, row.cg_iterations);
   }
