@@ -67,7 +67,7 @@ def draw_problem(result, problem):
     if not ladders:
         return None
     # One factorisation of a constant matrix is no axis.
-    has_equations = any((result.values("factorisations", result.case_of(row)) > 10).any() for row in ladders)
+    has_equations = any((result.values("factorisations", result.case_of(row)) > 20).any() for row in ladders)
     measures = [measure for measure in MEASURES if measure != "factorisations" or has_equations]
     figure, axes = new_figure(result, 15.5, 6.6, 1, len(measures) + 1,
                               gridspec_kw={"width_ratios": [1] * len(measures) + [0.62 if has_equations else 0.45]})

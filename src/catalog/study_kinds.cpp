@@ -2,6 +2,7 @@
 
 #include "study/agreement.hpp"
 #include "study/convergence.hpp"
+#include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
 #include "study/stiffness.hpp"
@@ -14,8 +15,9 @@ namespace {
 
 /// Every kind but the one that is made of the others.
 std::vector<study::StudyKind> plain_kinds() {
-  return {study::convergence_kind(), study::agreement_kind(),      study::linear_solver_kind(),
-          study::simulate_kind(),    study::work_precision_kind(), study::stiffness_kind()};
+  return {study::convergence_kind(), study::agreement_kind(), study::linear_solver_kind(),
+          study::jacobian_kind(),    study::simulate_kind(),  study::work_precision_kind(),
+          study::stiffness_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

@@ -180,6 +180,17 @@ TEST(Show, SaysWhyAFileCannotBeShown) {
   refuses("missing.h5", "No such file");
 }
 
+TEST(Show, TheColumnsThatAreNamed) {
+  const ScratchDirectory scratch;
+  write_study(scratch / "a.h5", "", sample_study(2));
+  EXPECT_THAT(show(scratch / "a.h5", {"order", "method"}),
+              HasSubstr("order  method\n-----  ------\n    4  rk0\n  nan  rk1\n"));
+  EXPECT_THAT(([&] { show(scratch / "a.h5", {"methd"}); }),
+              ThrowsMessage<InputError>(HasSubstr("did you mean \"method\"")));
+  write_trajectory(scratch / "t.h5", 3, 4);
+  EXPECT_THAT(([&] { show(scratch / "t.h5", {"time"}); }), ThrowsMessage<InputError>(HasSubstr("--csv")));
+}
+
 TEST(ShowTable, WritesCsvThatReadsBackInEveryDigit) {
   const ScratchDirectory scratch;
   study::StudyResult study = sample_study(2);
