@@ -26,6 +26,9 @@ class WrongProblems final : public Catalog {
  public:
   explicit WrongProblems(Alteration alteration) : alteration_(std::move(alteration)) {}
   std::unique_ptr<Integrator> method(const std::string& call) const override { return builtin_.method(call); }
+  schemes::SchemeData scheme_data(const std::string& call) const override {
+    return builtin_.scheme_data(call);
+  }
   std::vector<std::string> method_names() const override { return builtin_.method_names(); }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     Problem problem = builtin_.problem(name, parameters);
@@ -116,6 +119,9 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
    public:
     std::unique_ptr<Integrator> method(const std::string& call) const override {
       return builtin_.method(call);
+    }
+    schemes::SchemeData scheme_data(const std::string& call) const override {
+      return builtin_.scheme_data(call);
     }
     std::vector<std::string> method_names() const override { return builtin_.method_names(); }
     Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
