@@ -23,13 +23,11 @@ std::string running_text(const std::vector<std::string>& running) {
                              : fmt::format("{} and {} more", running.front(), running.size() - 1);
 }
 
-void count(const study::CaseReport& report, Tally& tally) {
-  const study::CaseResult& result = report.result;
+/// The verdicts at the end: some are reached from all cases together.
+void count(const study::CaseResult& result, Tally& tally) {
   tally.holds += result.verdict == Verdict::holds;
   tally.fails += result.verdict == Verdict::fails;
   tally.not_applicable += result.verdict == Verdict::not_applicable;
-  tally.kept += report.kept;
-  tally.not_computed += !report.computed;
   if (result.verdict == Verdict::fails)
     tally.failures.push_back(fmt::format("{}: {}", result.id, result.reason));
 }
@@ -60,7 +58,8 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   };
   options.finished = [&](const study::CaseReport& report) {
     bar.clear();
-    count(report, tally);
+    tally.kept += report.kept;
+    tally.not_computed += !report.computed;
     fmt::print("  [{}/{}] {:<14} {}  {}{}\n", ++done, report.total, to_string(report.result.verdict),
                report.result.id, report.result.reason,
                report.kept ? "  (kept)" : fmt::format("  ({:.1f} s)", report.seconds));
@@ -70,6 +69,7 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   const study::StudyResult result = study::run_plan(planned.plan, store, options);
   tally.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   bar.clear();
+  for (const study::CaseResult& finished : result.cases) count(finished, tally);
   store.write(run.command_line, result);
   tally.complete = result.complete;
   fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds,

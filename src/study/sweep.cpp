@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -171,6 +172,35 @@ PlannedCase with_parameters(PlannedCase inner, const std::string& point, std::ve
   return inner;
 }
 
+/// What the inner study concludes from the cases of one point.
+struct Conclusion {
+  std::map<std::string, std::string> inner_ids;  ///< by the ids in the sweep
+  std::vector<SummaryCell> cells;                ///< of the parameters
+  std::function<void(StudyResult&)> conclude;
+};
+
+/// Lets the inner study see the cases of its point as if it had run by itself.
+void conclude_point(StudyResult& sweep, const Conclusion& point) {
+  const auto parameters = static_cast<std::ptrdiff_t>(point.cells.size());
+  StudyResult inner;
+  std::vector<CaseResult*> places;
+  for (CaseResult& result : sweep.cases) {
+    const auto found = point.inner_ids.find(result.id);
+    if (found == point.inner_ids.end() || result.key.empty()) continue;
+    places.push_back(&result);
+    CaseResult& seen = inner.cases.emplace_back(result);
+    seen.id = found->second;
+    seen.summary.erase(seen.summary.begin(), seen.summary.begin() + parameters);
+  }
+  point.conclude(inner);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    std::string id = places[k]->id;
+    *places[k] = std::move(inner.cases[k]);
+    places[k]->id = std::move(id);
+    places[k]->summary.insert(places[k]->summary.begin(), point.cells.begin(), point.cells.end());
+  }
+}
+
 void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
                 bool quick, Plan& plan) {
   const std::vector<Parameter> parameters = read_parameters(spec, quick);
@@ -180,6 +210,7 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
   accept_everything(study);
   const std::string text = study.to_toml_text();
   bool is_first = true;
+  std::vector<Conclusion> conclusions;
   for (const std::vector<std::size_t>& point : grid_points(parameters)) {
     std::vector<TomlAssignment> assignments;
     std::vector<SummaryCell> cells;
@@ -200,9 +231,19 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
       if (plan.time_limit == 0.0) plan.time_limit = inner.time_limit;
     }
     is_first = false;
+    if (inner.conclude) {
+      Conclusion& conclusion = conclusions.emplace_back(Conclusion{{}, cells, inner.conclude});
+      for (const PlannedCase& planned : inner.cases) {
+        conclusion.inner_ids[group_name(name + "-" + planned.id)] = planned.id;
+      }
+    }
     for (PlannedCase& planned : inner.cases)
       plan.cases.push_back(with_parameters(std::move(planned), name, cells));
   }
+  if (conclusions.empty()) return;
+  plan.conclude = [conclusions = std::move(conclusions)](StudyResult& result) {
+    for (const Conclusion& point : conclusions) conclude_point(result, point);
+  };
 }
 
 }  // namespace

@@ -110,6 +110,24 @@ TEST(Sweep, RefusesMistakesOfItsOwnAndOfTheInnerStudy) {
   refuses(head + "[[parameter]]\npath = 'title'\nvalues = ['x']\n[study]\nkind = 'sweep'\n", "\"sweep\"");
 }
 
+TEST(Sweep, LetsTheInnerStudyConcludeAtEveryPoint) {
+  const StudyResult result =
+      result_of(plan_of(head + "[[parameter]]\npath = 'problem[0].parameters.stiffness'\nvalues = [1, 4]\n"
+                               "[study]\nkind = 'work_precision'\nmethods = ['rk4', 'heun']\n"
+                               "[[study.problem]]\nname = 'harmonic_oscillator'\nt_end = 2.0\n",
+                        true));
+  std::size_t fronts = 0;
+  for (const CaseResult& one : result.cases) {
+    EXPECT_EQ(one.summary.front().name, "parameter_stiffness");
+    for (const Column& column : one.columns) {
+      if (column.name != "front_rhs_evaluations_method") continue;
+      ++fronts;
+      EXPECT_FALSE(std::get<2>(column.values).empty()) << one.id;
+    }
+  }
+  EXPECT_EQ(fronts, 2u);
+}
+
 /// A scene file in the current directory of the test.
 class SweepOfAScene : public ::testing::Test {
  protected:
