@@ -91,7 +91,10 @@ void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<T
     not_applicable.push_back(fmt::format("{}", tally.not_applicable));
     kept.push_back(fmt::format("{}", tally.kept));
     seconds.push_back(fmt::format("{:.1f}", tally.seconds));
-    verdicts.push_back(tally.fails > 0 ? "fails" : tally.complete ? "holds" : "incomplete");
+    verdicts.push_back(tally.fails > 0   ? "fails"
+                       : !tally.complete ? "incomplete"
+                       : tally.holds > 0 ? "holds"
+                                         : "not applicable");
   }
   store::TextTable table;
   table.add_column("study", Align::left, names);
