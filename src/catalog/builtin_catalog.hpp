@@ -10,6 +10,7 @@ namespace fw::catalog {
 class BuiltinCatalog final : public study::Catalog {
  public:
   std::unique_ptr<Integrator> method(const std::string& call) const override { return make_method(call); }
+  schemes::SchemeData scheme_data(const std::string& call) const override { return scheme_of(call); }
   std::vector<std::string> method_names() const override {
     std::vector<std::string> names;
     for (const MethodEntry& entry : methods()) names.push_back(entry.name);

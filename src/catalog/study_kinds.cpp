@@ -4,12 +4,14 @@
 #include "study/convergence.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
+#include "study/stability.hpp"
 
 namespace fw::catalog {
 
 const std::vector<study::StudyKind>& study_kinds() {
   static const std::vector<study::StudyKind> list = {study::convergence_kind(), study::agreement_kind(),
-                                                     study::linear_solver_kind(), study::simulate_kind()};
+                                                     study::linear_solver_kind(), study::simulate_kind(),
+                                                     study::stability_kind()};
   return list;
 }
 

@@ -7,6 +7,7 @@
 
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
+#include "schemes/scheme_data.hpp"
 
 namespace fw::study {
 
@@ -19,6 +20,10 @@ class Catalog {
   /// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]". Throws
   /// InputError for an unknown name (with the nearest one) or option.
   virtual std::unique_ptr<Integrator> method(const std::string& call) const = 0;
+
+  /// The coefficients that define the scheme of a call; std::monostate where it is not given by any, or where
+  /// an option changes what the scheme is.
+  virtual schemes::SchemeData scheme_data(const std::string& call) const = 0;
 
   /// The names of all methods, in the order of the list.
   virtual std::vector<std::string> method_names() const = 0;

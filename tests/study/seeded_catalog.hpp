@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,6 +20,12 @@ class SeededCatalog final : public Catalog {
   std::unique_ptr<Integrator> method(const std::string& call) const override {
     const auto seed = seeds_.find(call);
     return seed != seeds_.end() ? seed->second() : builtin_.method(call);
+  }
+  /// Of a seed with the name of a method of the catalogue: the coefficients of that method.
+  schemes::SchemeData scheme_data(const std::string& call) const override {
+    const std::vector<std::string> known = builtin_.method_names();
+    const bool is_new = seeds_.contains(call) && std::find(known.begin(), known.end(), call) == known.end();
+    return is_new ? schemes::SchemeData{} : builtin_.scheme_data(call);
   }
   std::vector<std::string> method_names() const override {
     std::vector<std::string> names = builtin_.method_names();
