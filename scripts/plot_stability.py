@@ -26,6 +26,11 @@ def short(method):
     return method.split("[", 1)[0]
 
 
+def explain(figure, result, text):
+    """A line below the title that says what is drawn."""
+    figure.suptitle(f"{result.title}\n{text}", fontsize=12.5)
+
+
 def panel_grid(result, count, size, columns, extra=0.9):
     rows = math.ceil(count / columns)
     figure, axes = new_figure(result, size * columns + 0.5, size * rows + extra, rows, columns)
@@ -73,11 +78,10 @@ def draw_regions(result, rows):
             panel.plot(result.values("locus_real", case), result.values("locus_imaginary", case), color=EXACT,
                        linewidth=1.0, linestyle=(0, (4, 2)))
         panel.set_title(short(row["method"]), loc="left", fontsize=11)
-        panel.set_xlabel(f"real {interval_text(row['real_interval'])}, "
+        panel.set_xlabel(f"Re hλ\nreal axis {interval_text(row['real_interval'])}, "
                          f"imaginary {interval_text(row['imaginary_interval'])}", fontsize=9)
-    figure.supylabel("Im hλ", fontsize=11)
-    figure.supxlabel("Re hλ; below each: intervals of stability on the axes.   "
-                     "Filled: no growth;  dashed: root locus of multistep formulas", fontsize=11)
+        panel.set_ylabel("Im hλ" if panel.get_subplotspec().is_first_col() else "", fontsize=9)
+    explain(figure, result, "filled: |R(hλ)| ≤ 1, nothing grows; dashed: root locus of multistep formulas")
     return figure
 
 
@@ -89,8 +93,9 @@ def draw_order_stars(result, rows):
     for panel, row in zip(panels, rows):
         draw_plane(panel, result, result.case_of(row), "order_star", STAR)
         panel.set_title(short(row["method"]), loc="left", fontsize=11)
-    figure.supylabel("Im z", fontsize=11)
-    figure.supxlabel("Re z;  filled: order star |R(z) e⁻ᶻ| > 1, with order + 1 fingers at 0", fontsize=11)
+        panel.set_xlabel("Re z", fontsize=9)
+        panel.set_ylabel("Im z" if panel.get_subplotspec().is_first_col() else "", fontsize=9)
+    explain(figure, result, "order stars, filled: |R(z) e⁻ᶻ| > 1; order + 1 fingers meet at 0")
     return figure
 
 
@@ -130,7 +135,7 @@ def draw_limits(result, rows):
         return None
     low, high = min(finite) / 2.5, max(finite) * 2.5
     height = max(0.235 * len(methods), 1.6)
-    figure, axes = new_figure(result, max(4.6 * len(problems) + 2.6, 8.0), height + 2.6, 1, len(problems), sharey=True)
+    figure, axes = new_figure(result, max(4.2 * len(problems) + 2.6, 10.5), height + 2.0, 1, len(problems), sharey=True)
     for panel, problem in zip(axes[0], problems):
         for row in (row for row in rows if row["problem"] == problem):
             level = methods.index(row["method"])
@@ -150,6 +155,11 @@ def draw_limits(result, rows):
                                xytext=(4, 0), textcoords="offset points")
         panel.set_xscale("log")
         panel.set_xlim(low / 1.3, high * 1.3)
+        ticks = [digit * 10.0 ** power for power in range(-4, 5) for digit in (1, 2, 5)]
+        ticks = [tick for tick in ticks if low / 1.3 <= tick <= high * 1.3]
+        ticks = ticks if len(ticks) <= 7 else [tick for tick in ticks if f"{tick:e}".startswith("1")]
+        panel.set_xticks(ticks, [number(tick) for tick in ticks])
+        panel.minorticks_off()
         panel.set_title(problem, loc="left")
         panel.set_xlabel("largest stable step  h |λ|max")
         ratios = [abs(row["ratio"] - 1) for row in rows if row["problem"] == problem and math.isfinite(row["ratio"])]
@@ -160,15 +170,9 @@ def draw_limits(result, rows):
                            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5})
         panel.grid(axis="y", linewidth=0.4)
     axes[0][0].set_yticks(range(len(methods)), [short(method) for method in methods], fontsize=8.5)
-    axes[0][0].set_ylim(len(methods) - 0.2, -1)
-    handles = [Line2D([], [], linestyle="none", marker="|", markersize=11, markeredgewidth=2.2, color=PALETTE[0],
-                      label="predicted from the spectrum of J"),
-               Line2D([], [], linestyle="none", marker="o", markersize=5, color=PALETTE[1],
-                      label="observed by bisection on runs"),
-               Line2D([], [], linestyle="none", marker="o", markersize=5, color=PALETTE[1], markerfacecolor="none",
-                      label="at the left edge: unstable at every step; at the right edge: no limit found")]
-    axes[0][0].legend(handles=handles, loc="upper left", bbox_to_anchor=(0, -0.6 / height), fontsize=9.5,
-                      borderaxespad=0)
+    axes[0][0].set_ylim(len(methods) + 0.2, -1)
+    explain(figure, result, "bar: predicted from the spectrum of J; dot: observed by bisection on runs\n"
+            "ring at the left edge: unstable at every step; at the right edge: no limit")
     return figure
 
 

@@ -112,7 +112,13 @@ LinearModes dense_modes(const SecondOrderSystem& system, double t, ConstVectorRe
     if (std::abs(mode.damping) <= negligible * most_damping) mode.damping = 0.0;
     if (modes.coupling == 0.0) add_roots(mode, roots);
     const bool rests = mode.omega_squared == 0.0 && mode.damping == 0.0;
-    if (mode.omega_squared >= 0.0 && mode.damping >= 0.0 && !rests) modes.vibrations.push_back(mode);
+    if (!(mode.omega_squared >= 0.0) || !(mode.damping >= 0.0) || rests) continue;
+    modes.vibrations.push_back(mode);
+    Vector& shape = modes.shapes.emplace_back(Vector::Zero(system.degrees_of_freedom()));
+    for (Index k = 0; k < n; ++k) {
+      const Index place = moving[static_cast<std::size_t>(k)];
+      shape[place] = solver.eigenvectors()(k, i) / std::sqrt(system.mass()[place]);
+    }
   }
   if (modes.coupling == 0.0) {
     keep_eigenvalues(Eigen::Map<const Eigen::VectorXcd>(roots.data(), static_cast<Index>(roots.size())),

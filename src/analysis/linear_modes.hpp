@@ -21,6 +21,8 @@ struct LinearModes {
   std::vector<Complex> eigenvalues{};
   /// Of a second-order system; modes that grow or rest are left out.
   std::vector<VibrationMode> vibrations{};
+  /// The displacement q of each of these, all degrees of freedom; empty for first-order and large systems.
+  std::vector<Vector> shapes{};
   /// The largest entry of C between two different modes of W, relative to its largest entry: 0 where the
   /// modes do not exchange energy (proportional damping), and `vibrations` is exact.
   double coupling = 0.0;

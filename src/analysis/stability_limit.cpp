@@ -61,13 +61,31 @@ class SignWatch final : public Observer {
 
 }  // namespace
 
+double LimitSearch::next(double step) const {
+  double factor = ratio;
+  if (std::isfinite(watched)) {
+    const double place = step / watched;
+    constexpr double slack = 1.0 - 1e-9;  // of steps that should lie on the borders
+    if (place >= 0.997 * slack && place < 1.004) {
+      factor = std::min(factor, 1.0005);
+    } else if (place >= 0.98 * slack && place < 1.02) {
+      factor = std::min(factor, 1.0025);
+    } else if (place >= 0.7 * slack && place < 0.98) {
+      factor = std::min({factor, 1.02, 0.98 / place});
+    } else if (place < 0.7) {
+      factor = std::min(factor, 0.7 / place);
+    }
+  }
+  return std::min(step * factor, farthest);
+}
+
 double largest_stable_step(const std::function<bool(double)>& is_stable, const LimitSearch& search) {
   double good = 0.0, bad = 0.0;
   if (is_stable(search.first)) {
     good = search.first;
     for (double step = good;;) {
       if (step >= search.farthest) return infinity;
-      step = std::min(step * search.ratio, search.farthest);
+      step = search.next(step);
       if (!is_stable(step)) {
         bad = step;
         break;
@@ -85,21 +103,9 @@ double largest_stable_step(const std::function<bool(double)>& is_stable, const L
     }
     if (good == 0.0) return 0.0;
   }
-  const auto bisect = [&] {
-    while (bad - good > search.resolution * bad) {
-      const double middle = 0.5 * (good + bad);
-      (is_stable(middle) ? good : bad) = middle;
-    }
-  };
-  bisect();
-  const double found = good;
-  for (int k = 1; k <= search.looks_back; ++k) {
-    const double step = found * (0.5 + 0.5 * k / (search.looks_back + 1.0));
-    if (is_stable(step)) continue;
-    good = found * (0.5 + 0.5 * (k - 1) / (search.looks_back + 1.0));
-    bad = step;
-    bisect();
-    break;
+  while (bad - good > search.resolution * bad) {
+    const double middle = 0.5 * (good + bad);
+    (is_stable(middle) ? good : bad) = middle;
   }
   return 0.5 * (good + bad);
 }
@@ -126,6 +132,21 @@ GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
   }
 }
 
+GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
+                                   std::shared_ptr<const OdeSystem> system, double t0, const Vector& shape,
+                                   double frequency, std::function<bool()> is_interrupted)
+    : integrator_(std::move(integrator)),
+      system_(std::move(system)),
+      t0_(t0),
+      start_(system_->size()),
+      weight_(system_->size()),
+      is_interrupted_(std::move(is_interrupted)) {
+  const Vector root_mass = system_->second_order()->mass().cwiseSqrt();
+  weight_ << frequency * root_mass, root_mass;
+  constexpr double phase = 1.0;
+  start_ << amplitude * std::cos(phase) * shape, amplitude * frequency * std::sin(phase) * shape;
+}
+
 GrowthExperiment::Outcome GrowthExperiment::run(double step, std::int64_t steps) const {
   QuarterMaxima observer(weight_, steps, is_interrupted_);
   const Ivp ivp{system_, t0_, t0_ + step * static_cast<double>(steps), start_, {}};
@@ -135,6 +156,7 @@ GrowthExperiment::Outcome GrowthExperiment::run(double step, std::int64_t steps)
   outcome.is_interrupted = observer.interrupted();
   if (observer.has_blown_up() || (!solution.status.ok() && !observer.interrupted())) {
     outcome.growth = infinity;
+    if (!observer.has_blown_up()) outcome.status = solution.status;
     outcome.rate = std::numeric_limits<double>::quiet_NaN();
     return outcome;
   }

@@ -110,6 +110,7 @@ struct StabilityLimit {
   /// Measured over predicted ln of the factor per step, where growth is the evidence.
   std::vector<double> growth_ratios{};
   std::string failure{};
+  std::string failed_run{};  ///< how the last run ended that failed without growing
 
   double ratio() const {
     if (std::isinf(predicted) && std::isinf(observed)) return 1.0;

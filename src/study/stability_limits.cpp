@@ -50,11 +50,16 @@ class LimitCase {
     bool good = true;
     if (limit.is_confirmed_by_growth) {
       good = limit.growth_ratios.size() == 2;
-      text = limit.predicted == 0.0
-                 ? "predicted unstable at every step, "
-                 : fmt::format("predicted limit {:.5g} s, growth beyond it too weak for a threshold, ",
-                               limit.predicted);
-      text += "measured/predicted growth";
+      text = limit.predicted == 0.0 ? "predicted unstable at every step"
+                                    : fmt::format("predicted {:.5g} s", limit.predicted);
+      if (limit.predicted > 0.0 && !std::isnan(limit.observed)) {
+        good = good && agrees(limit.predicted, limit.observed, settings_.tolerance);
+        text += fmt::format(", observed {:.5g} s in the critical mode, ratio {:.4f}", limit.observed,
+                            limit.ratio());
+      } else if (limit.predicted > 0.0) {
+        text += ", too weak growth beyond for a threshold";
+      }
+      text += "; measured/predicted growth";
       for (const double ratio : limit.growth_ratios) {
         good = good && std::abs(ratio - 1.0) <= settings_.tolerance;
         text += fmt::format(" {:.4f}", ratio);
@@ -70,6 +75,7 @@ class LimitCase {
       text = fmt::format("predicted {:.5g} s, observed {:.5g} s, ratio {:.4f}", limit.predicted,
                          limit.observed, limit.ratio());
     }
+    if (!good && !limit.failed_run.empty()) text += fmt::format(" ({})", limit.failed_run);
     if (!std::isnan(limit.monotone_predicted)) {
       good = good && agrees(limit.monotone_predicted, limit.monotone_observed, settings_.tolerance);
       text += std::isinf(limit.monotone_predicted)
@@ -96,7 +102,7 @@ class LimitCase {
       is_theory = is_theory && is_linear(k) && !std::isnan(limit.predicted);
       all_hold = holds(limit, text) && all_hold;
       if (!is_family()) reason = text;
-      if (limit.predicted > 0.0 && !limit.is_confirmed_by_growth)
+      if (limit.predicted > 0.0 && !std::isnan(limit.ratio()))
         largest = std::max(largest, std::abs(limit.ratio() - 1.0));
       for (const double ratio : limit.growth_ratios) largest = std::max(largest, std::abs(ratio - 1.0));
     }

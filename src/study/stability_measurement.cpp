@@ -74,13 +74,26 @@ class LimitMeasurement {
     const bool is_whole = growth_.is_of_whole_step(modes, exact_system());
     if (std::isnan(growth_at(modes, first_step * unit()))) return none;
     if (modes.is_undamped && growth_.grows_at_every_step()) return 0.0;
-    const double allowed = 1.0 + (is_whole ? 1e-6 : 1e-9);
+    const double allowed = 1.0 + resolved_growth(is_whole);
     return analysis::largest_stable_step([&](double step) { return growth_at(modes, step) <= allowed; },
                                          {.first = first_step * unit(),
-                                          .ratio = is_whole ? 1.05 : 1.01,
+                                          .ratio = is_whole        ? 1.05
+                                                   : is_by_steps() ? 1.01
+                                                                   : 1.002,
                                           .farthest = farthest(),
-                                          .resolution = 1e-5,
-                                          .looks_back = is_whole ? 8 : 0});
+                                          .resolution = 1e-5});
+  }
+
+  bool is_by_steps() const { return growth_.basis() == analysis::GrowthBasis::single_steps; }
+
+  /// Growth per step beyond rounding: of |R|; of roots of a polynomial and eigenvalues of small matrices,
+  /// which may be double; of single steps (of implicit schemes to what their iterations leave); of large
+  /// matrices.
+  double resolved_growth(bool is_whole) const {
+    if (is_whole) return 1e-6;
+    if (growth_.basis() == analysis::GrowthBasis::stability_function) return 1e-13;
+    if (is_by_steps()) return method_.integrator->info().is_explicit ? 1e-10 : 1e-7;
+    return 1e-9;
   }
 
   /// So many steps that 1 % beyond the predicted limit grows clearly; 0: not with as many as are allowed.
@@ -89,7 +102,7 @@ class LimitMeasurement {
     if (!(predicted > 0.0)) return 0;
     if (std::isinf(predicted)) return settings_.fewest_steps / 4;
     double strongest = 1.0;
-    for (const double excess : {0.004, 0.007, 0.01})
+    for (const double excess : {5e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2})
       strongest = std::max(strongest, growth_at(spectrum_.modes.front(), (1.0 + excess) * predicted));
     const double steps = clear / std::log(strongest);
     if (!(steps <= static_cast<double>(settings_.most_steps))) return 0;
@@ -107,12 +120,58 @@ class LimitMeasurement {
           [&](double step) {
             const GrowthExperiment::Outcome outcome = experiment.run(step, limit.steps);
             if (outcome.is_interrupted) throw Interrupted{};
+            if (!outcome.status.ok() && outcome.status.code != StatusCode::blow_up)
+              limit.failed_run = outcome.status.describe();
             return outcome.growth < settings_.growth;
           },
-          {.first = first_step * unit(), .ratio = 1.25, .farthest = farthest(), .looks_back = 11});
+          search_near(limit.predicted));
       return;
     }
     confirm_growth(experiment, limit);
+    if (limit.predicted > 0.0) observe_critical_mode(limit);
+  }
+
+  analysis::LimitSearch search_near(double predicted) const {
+    return {.first = std::min(first_step * unit(), 0.5 * predicted),
+            .ratio = 1.25,
+            .farthest = farthest(),
+            .watched = predicted > 0.0 ? predicted : infinity};
+  }
+
+  /// Growth that is too weak to be told from the beat of many modes is seen where only the mode that grows is
+  /// excited: of R(z) to rounding, of others (whose norm is not that of the mode) by a fifth.
+  void observe_critical_mode(StabilityLimit& limit) const {
+    const LinearModes& modes = spectrum_.modes.front();
+    if (modes.shapes.empty() || modes.coupling > 0.0) return;
+    std::size_t critical = 0;
+    double strongest = 0.0;
+    for (std::size_t k = 0; k < modes.vibrations.size(); ++k) {
+      const auto& mode = modes.vibrations[k];
+      if (mode.damping != 0.0) return;
+      const double h = 1.01 * limit.predicted;
+      const double growth = growth_.of_vibration(h * h * mode.omega_squared, 0.0);
+      if (growth > strongest) {
+        strongest = growth;
+        critical = k;
+      }
+    }
+    const MethodInfo& info = method_.integrator->info();
+    const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
+                             (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
+                              !info.carries_more_than_state && !info.needs_second_order);
+    const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
+    const double bound =
+        is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;
+    const GrowthExperiment experiment(method_.integrator, ivp_.system, ivp_.t0, modes.shapes[critical],
+                                      std::sqrt(modes.vibrations[critical].omega_squared),
+                                      [this] { return context_.is_interrupted(); });
+    limit.observed = analysis::largest_stable_step(
+        [&](double step) {
+          const GrowthExperiment::Outcome outcome = experiment.run(step, settings_.most_steps);
+          if (outcome.is_interrupted) throw Interrupted{};
+          return outcome.growth < bound;
+        },
+        search_near(limit.predicted));
   }
 
   /// Where instability has no threshold that runs could show, it is shown at two steps that are far apart:
@@ -123,13 +182,14 @@ class LimitMeasurement {
     const LinearModes& modes = spectrum_.modes.front();
     for (const std::int64_t steps : {settings_.most_steps / 20, settings_.most_steps}) {
       const double wanted = logarithm / static_cast<double>(steps);
-      const double step =
+      double step =
           analysis::largest_stable_step([&](double h) { return !(std::log(growth_at(modes, h)) > wanted); },
                                         {.first = std::max(first_step * unit(), 1.01 * limit.predicted),
                                          .ratio = 1.05,
                                          .farthest = farthest(),
-                                         .resolution = 1e-6});
+                                         .resolution = 1e-9});
       if (!(step > 0.0) || std::isinf(step)) continue;
+      step *= 1.0 + 1e-9;  // growth may jump where a gap begins
       const GrowthExperiment::Outcome outcome = experiment.run(step, steps);
       if (outcome.is_interrupted) throw Interrupted{};
       limit.growth_ratios.push_back(outcome.rate / std::log(growth_at(modes, step)));

@@ -95,7 +95,7 @@ void fill_numbers(const StabilityMethod& method, const SchemeGrowth& growth, Sta
   if (growth.stability_function()) {
     const schemes::LinearStability stability = schemes::linear_stability(*growth.stability_function());
     row.real_interval = stability.real_interval;
-    row.imaginary_interval = stability.imaginary_interval;
+    row.imaginary_interval = growth.grows_at_every_step() ? 0.0 : stability.imaginary_interval;
     row.angle = stability.alpha_degrees;
     row.at_infinity = stability.at_infinity;
     return;

@@ -167,8 +167,8 @@ class Stability(PlotTest):
         regions = self.draw(plot_stability, self.path)[0]
         for panel in regions.axes[:2]:
             self.assertEqual(panel.get_aspect(), 1.0)
-        self.assertEqual(regions.axes[0].get_xlabel(), "real 2, imaginary 0")
-        self.assertEqual(regions.axes[1].get_xlabel(), "real ∞, imaginary ∞")
+        self.assertEqual(regions.axes[0].get_xlabel(), "Re hλ\nreal axis 2, imaginary 0")
+        self.assertEqual(regions.axes[1].get_xlabel(), "Re hλ\nreal axis ∞, imaginary ∞")
 
     def test_limits_stand_where_they_are_and_at_the_edges(self):
         limits = self.draw(plot_stability, self.path)[3]

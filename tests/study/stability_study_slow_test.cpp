@@ -16,8 +16,11 @@ TEST(StabilityStudy, NamesEveryExplicitSchemeOfTheCatalogue) {
   const std::vector<std::string> listed = CheckedTable::parse_file(chain_study).strings("methods");
   const std::set<std::string> methods(listed.begin(), listed.end());
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (entry.info().is_explicit && entry.info().has_fixed_step)
+    // Its inner solver chooses steps by tolerances: a step is no linear map.
+    if (entry.name == "sundials:arkode_mri") continue;
+    if (entry.info().is_explicit && entry.info().has_fixed_step) {
       EXPECT_TRUE(methods.contains(entry.name)) << entry.name;
+    }
   }
 }
 
