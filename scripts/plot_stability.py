@@ -102,7 +102,7 @@ def draw_order_stars(result, rows):
 def draw_imaginary_axis(result, rows):
     """Growth per step of an undamped vibration, which is all that a position scheme has a say in."""
     bases = list(dict.fromkeys(row["basis"] for row in rows))
-    figure, axes = new_figure(result, 15, 4.6, 1, len(bases), sharey=True)
+    figure, axes = new_figure(result, 15, 5.0, 1, len(bases), sharey=True)
     for panel, basis in zip(axes[0], bases):
         for index, row in enumerate(row for row in rows if row["basis"] == basis):
             case = result.case_of(row)
@@ -114,7 +114,7 @@ def draw_imaginary_axis(result, rows):
         panel.set_ylim(0, 2)
         panel.set_title(basis, loc="left")
         panel.set_xlabel("hω")
-        panel.legend(fontsize=8.5, loc="upper left", bbox_to_anchor=(0, -0.16), ncols=2, borderaxespad=0)
+        panel.legend(fontsize=8.5, loc="upper left", bbox_to_anchor=(0, -0.27), ncols=2, borderaxespad=0)
     axes[0][0].set_ylabel("growth of an undamped\nvibration per step")
     return figure
 
@@ -209,7 +209,7 @@ def draw_laws(result, rows):
                 line = 0.45 * lowest * (ends / ends[1]) ** expected
                 panel.plot(ends, line, color=QUIET, linestyle=(0, (5, 3)), linewidth=1.2)
                 panel.annotate(f"slope {number(expected)}", (ends[0], line[0]), color=QUIET, fontsize=10,
-                               xytext=(0, -4), textcoords="offset points", va="top")
+                               xytext=(0, -16), textcoords="offset points", va="top")
         parameter = result.case_of(mine[0])["parameter"].attrs["name"]
         panel.set_xlabel(f"|{parameter if isinstance(parameter, str) else parameter.decode()}|")
         panel.set_ylabel(label("largest stable step h", "s"))
@@ -220,7 +220,7 @@ def draw_laws(result, rows):
     handles = [Line2D([], [], markersize=6.5, linewidth=1.3, label=short(method), **style)
                for method, style in seen.items()]
     axes[0][-1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0,
-                       title="lines: predicted\nmarks: observed", alignment="left", fontsize=9.5)
+                       title="lines: predicted\nmarks: observed\n(no mark: shown by growth)", alignment="left", fontsize=9.5)
     return figure
 
 
@@ -254,7 +254,7 @@ def draw_thresholds(result, rows):
         left.loglog(k, predicted, color=colour, linewidth=1.4, label=f"theory h = {number(round(factor, 5))}/k")
         left.loglog(k, observed, color=colour, linestyle="none", marker="o", label=f"found by bisection: {text}")
     middle = len(k) // 2
-    for height, text in ((0.25, "decays monotonically"), (5.0, "diverges")):
+    for height, text in ((0.05, "decays monotonically"), (8.0, "diverges")):
         left.annotate(text, (k[middle], height / k[middle]), ha="center", va="center", fontsize=10.5)
     left.set_ylim(0.1 / k.max(), top)
     left.set_xlim(k.min(), k.max())
@@ -267,9 +267,9 @@ def draw_thresholds(result, rows):
         case = result.case_of(row)
         k = result.values("spectral_radius", case)
         limit, monotone = result.values("observed_limit", case) * k, result.values("monotone_observed", case) * k
-        for values, colour, depth in ((limit, OSCILLATES, 0.6), (monotone, INSIDE, 0.6)):
+        for values, colour in ((limit, OSCILLATES), (numpy.minimum(monotone, limit), INSIDE)):
             if not numpy.isnan(values).all():
-                right.barh(height, min(values.min(), end), height=depth, color=colour)
+                right.barh(height, min(values.min(), end), height=0.6, color=colour)
         known = not numpy.isnan(monotone).all()
         if not known:
             right.barh(height, min(limit.min(), end), height=0.6, color="white", edgecolor=QUIET, linewidth=0.8)

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "analysis/stability_limit.hpp"
@@ -138,23 +139,31 @@ class LimitMeasurement {
             .watched = predicted > 0.0 ? predicted : infinity};
   }
 
-  /// Growth that is too weak to be told from the beat of many modes is seen where only the mode that grows is
-  /// excited: of R(z) to rounding, of others (whose norm is not that of the mode) by a fifth.
-  void observe_critical_mode(StabilityLimit& limit) const {
+  /// From the mode that grows most with this step; empty where modes are damped or unknown.
+  std::optional<GrowthExperiment> critical_mode(double step) const {
     const LinearModes& modes = spectrum_.modes.front();
-    if (modes.shapes.empty() || modes.coupling > 0.0) return;
+    if (modes.shapes.empty() || modes.coupling > 0.0) return std::nullopt;
     std::size_t critical = 0;
     double strongest = 0.0;
     for (std::size_t k = 0; k < modes.vibrations.size(); ++k) {
-      const auto& mode = modes.vibrations[k];
-      if (mode.damping != 0.0) return;
-      const double h = 1.01 * limit.predicted;
-      const double growth = growth_.of_vibration(h * h * mode.omega_squared, 0.0);
+      const analysis::VibrationMode& mode = modes.vibrations[k];
+      if (mode.damping != 0.0) return std::nullopt;
+      const double growth = growth_.of_vibration(step * step * mode.omega_squared, 0.0);
       if (growth > strongest) {
         strongest = growth;
         critical = k;
       }
     }
+    return GrowthExperiment(method_.integrator, ivp_.system, ivp_.t0, modes.shapes[critical],
+                            std::sqrt(modes.vibrations[critical].omega_squared),
+                            [this] { return context_.is_interrupted(); });
+  }
+
+  /// Growth that is too weak to be told from the beat of many modes is seen where only the mode that grows is
+  /// excited: of R(z) to rounding, of others (whose norm is not that of the mode) by a fifth.
+  void observe_critical_mode(StabilityLimit& limit) const {
+    const std::optional<GrowthExperiment> experiment = critical_mode(1.01 * limit.predicted);
+    if (!experiment) return;
     const MethodInfo& info = method_.integrator->info();
     const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
                              (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
@@ -162,12 +171,9 @@ class LimitMeasurement {
     const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
     const double bound =
         is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;
-    const GrowthExperiment experiment(method_.integrator, ivp_.system, ivp_.t0, modes.shapes[critical],
-                                      std::sqrt(modes.vibrations[critical].omega_squared),
-                                      [this] { return context_.is_interrupted(); });
     limit.observed = analysis::largest_stable_step(
         [&](double step) {
-          const GrowthExperiment::Outcome outcome = experiment.run(step, settings_.most_steps);
+          const GrowthExperiment::Outcome outcome = experiment->run(step, settings_.most_steps);
           if (outcome.is_interrupted) throw Interrupted{};
           return outcome.growth < bound;
         },
@@ -190,7 +196,8 @@ class LimitMeasurement {
                                          .resolution = 1e-9});
       if (!(step > 0.0) || std::isinf(step)) continue;
       step *= 1.0 + 1e-9;  // growth may jump where a gap begins
-      const GrowthExperiment::Outcome outcome = experiment.run(step, steps);
+      // Modes of nearly the same growth would blur it.
+      const GrowthExperiment::Outcome outcome = critical_mode(step).value_or(experiment).run(step, steps);
       if (outcome.is_interrupted) throw Interrupted{};
       limit.growth_ratios.push_back(outcome.rate / std::log(growth_at(modes, step)));
       limit.steps = steps;
