@@ -73,6 +73,31 @@ sequence = 3
 scene = "SCENES/damped_network.toml"
 t_end = 0.1
 """,
+    # numbers and strings as parameters
+    "sweep": """
+kind = "sweep"
+title = "Sweep"
+
+[[parameter]]
+path = "problem[0].parameters.stiffness"
+unit = "N/m"
+values = [1, 2.5]
+
+[[parameter]]
+path = "methods[0]"
+name = "scheme"
+values = ["rk4", "heun"]
+
+[study]
+kind = "simulate"
+methods = ["rk4"]
+steps = [0.1]
+frames = 2
+
+[[study.problem]]
+name = "harmonic_oscillator"
+t_end = 1.0
+""",
     # with and without a closed form, with and without invariants, with one and with a fixed step, from a scene
     "trajectories": """
 kind = "simulate"

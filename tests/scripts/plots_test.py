@@ -20,6 +20,7 @@ import plot_linear_solver  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
 import plot_stability  # noqa: E402
+import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
@@ -348,6 +349,26 @@ class Trajectory(PlotTest):
     def test_many_particles_have_a_choice_of_paths_that_is_announced(self):
         figure, = self.draw(plot_trajectory, self.write("trajectory", particles=60))
         self.assertIn("paths (12 of 60), seen along y", [axes.get_title(loc="left") for axes in figure.axes])
+
+
+class Sweep(PlotTest):
+    def test_has_a_line_per_method_and_other_parameter_over_the_first_one(self):
+        figure, = self.draw(plot_sweep, self.write("sweep"))
+        axes, = figure.axes
+        self.assertEqual(sorted(texts_of_legend(axes)), ["rk4, step = 0.01 s", "rk4, step = 0.02 s",
+                                                         "velocity_verlet, step = 0.01 s", "velocity_verlet, step = 0.02 s"])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("stiffness [N/m]", "end error [m]"))
+        line = next(line for line in axes.lines if line.get_label() == "rk4, step = 0.02 s")
+        numpy.testing.assert_allclose(line.get_ydata(), numpy.array([1, 10, 100]) * 0.02 ** 4)
+        self.assertEqual((axes.get_xscale(), axes.get_yscale()), ("log", "log"))
+
+    def test_shows_the_first_number_that_varies_where_none_is_named(self):
+        figure, = self.draw(plot_sweep, self.write("sweep", quantities="[]"))
+        self.assertEqual(figure.axes[0].get_ylabel(), "end error [m]")
+
+    def test_refuses_a_quantity_that_is_not_there(self):
+        with self.assertRaisesRegex(ResultError, "end_eror"):
+            self.draw(plot_sweep, self.write("sweep", quantities='["end_eror"]'))
 
 
 class SimulatedCases(PlotTest):

@@ -240,7 +240,22 @@ def stability(path):
             put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
 
 
-ALL = {"agreement": agreement, "convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral}
+def sweep(path, quantities='["end_error"]'):
+    """end_error = stiffness * step^p for two schemes and two steps."""
+    rows = [(stiffness, step, method, stiffness * step ** METHODS[method])
+            for stiffness in (1.0, 10.0, 100.0) for step in (0.01, 0.02) for method in ("velocity_verlet", "rk4")]
+    with new_file(path, "sweep", "Error over stiffness and step") as file:
+        file.attrs["spec"] = f'kind = "sweep"\nquantities = {quantities}\n'
+        summary = file.create_group("summary", track_order=True)
+        put(summary, "case", [f"stiffness={row[0]:g},step={row[1]:g}-{row[2]}" for row in rows], "")
+        put(summary, "parameter_stiffness", numpy.array([row[0] for row in rows]), "N/m")
+        put(summary, "parameter_step", numpy.array([row[1] for row in rows]), "s")
+        put(summary, "method", [row[2] for row in rows], "")
+        put(summary, "constant", numpy.ones(len(rows)))
+        put(summary, "end_error", numpy.array([row[3] for row in rows]), "m")
+
+
+ALL = {"agreement": agreement, "convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral, "sweep": sweep}
 
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
