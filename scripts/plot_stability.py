@@ -162,7 +162,8 @@ def draw_limits(result, rows):
         panel.minorticks_off()
         panel.set_title(problem, loc="left")
         panel.set_xlabel("largest stable step  h |λ|max")
-        ratios = [abs(row["ratio"] - 1) for row in rows if row["problem"] == problem and math.isfinite(row["ratio"])]
+        ratios = [abs(row["ratio"] - 1) for row in rows if row["problem"] == problem
+                  and math.isfinite(row["ratio"]) and row["verdict"] != "not applicable"]
         if ratios:
             panel.annotate(f"largest |observed/predicted − 1|: {100 * max(ratios):.2g} %", (1, 0),
                            xycoords="axes fraction", ha="right", va="bottom", fontsize=8.5, color=QUIET,

@@ -65,6 +65,9 @@ class LimitCase {
         text += fmt::format(" {:.4f}", ratio);
       }
       if (limit.growth_ratios.size() != 2) text += " at too few steps";
+    } else if (std::isnan(limit.predicted)) {
+      text =
+          std::isinf(limit.observed) ? "no limit observed" : fmt::format("observed {:.5g} s", limit.observed);
     } else if (std::isinf(limit.predicted)) {
       good = agrees(limit.predicted, limit.observed, settings_.tolerance);
       text = std::isinf(limit.observed)

@@ -67,7 +67,11 @@ class LimitMeasurement {
 
   double predict() const {
     double smallest = infinity;
-    for (const LinearModes& modes : spectrum_.modes) smallest = std::min(smallest, predict(modes));
+    for (const LinearModes& modes : spectrum_.modes) {
+      const double limit = predict(modes);
+      if (std::isnan(limit)) return none;
+      smallest = std::min(smallest, limit);
+    }
     return smallest;
   }
 
