@@ -15,6 +15,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double amplitude = 1e-6;
 /// Growth beyond this needs no more steps to be seen.
 constexpr double clear_growth = 1e20;
+/// What has decayed so far is stable; numbers near the smallest ones would lose their digits next.
+constexpr double vanishing = 1e-100;
 
 class QuarterMaxima final : public Observer {
  public:
@@ -28,8 +30,9 @@ class QuarterMaxima final : public Observer {
     maximum_[quarter] = std::max(maximum_[quarter], norm);
     last_ = view.index;
     if (norm > clear_growth * start_) has_blown_up_ = true;
+    if (norm < vanishing * start_) has_vanished_ = true;
     interrupted_ = is_interrupted_ && is_interrupted_();
-    return !has_blown_up_ && !interrupted_;
+    return !has_blown_up_ && !has_vanished_ && !interrupted_;
   }
 
   bool interrupted() const { return interrupted_; }
@@ -42,7 +45,7 @@ class QuarterMaxima final : public Observer {
   const std::function<bool()>& is_interrupted_;
   double start_ = 0.0;
   double maximum_[4] = {0.0, 0.0, 0.0, 0.0};
-  bool has_blown_up_ = false, interrupted_ = false;
+  bool has_blown_up_ = false, has_vanished_ = false, interrupted_ = false;
 };
 
 class SignWatch final : public Observer {
@@ -154,7 +157,8 @@ GrowthExperiment::Outcome GrowthExperiment::run(double step, std::int64_t steps)
       integrator_->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, observer);
   Outcome outcome;
   outcome.is_interrupted = observer.interrupted();
-  if (observer.has_blown_up() || (!solution.status.ok() && !observer.interrupted())) {
+  if (observer.has_blown_up() ||
+      (!solution.status.ok() && solution.status.code != StatusCode::stopped_by_observer)) {
     outcome.growth = infinity;
     if (!observer.has_blown_up()) outcome.status = solution.status;
     outcome.rate = std::numeric_limits<double>::quiet_NaN();

@@ -44,8 +44,8 @@ SchemeGrowth splitting(const std::string& name, bool by_steps = false) {
 TEST(SchemeGrowth, IsTheSameFromCoefficientsAndFromSingleSteps) {
   for (const Complex z : {Complex(-0.5, 0.0), Complex(-0.3, 1.2), Complex(0.0, 0.9), Complex(-2.9, 0.1)}) {
     EXPECT_NEAR(runge_kutta("rk4").of_eigenvalue(z), runge_kutta("rk4", true).of_eigenvalue(z), 1e-12);
-    EXPECT_NEAR(splitting("forest_ruth").of_vibration(std::norm(z) / 4.0, -z.real()),
-                splitting("forest_ruth", true).of_vibration(std::norm(z) / 4.0, -z.real()), 1e-9);
+    EXPECT_NEAR(splitting("position_verlet").of_vibration(std::norm(z) / 4.0, -z.real()),
+                splitting("position_verlet", true).of_vibration(std::norm(z) / 4.0, -z.real()), 1e-9);
   }
 }
 
@@ -88,7 +88,7 @@ TEST(SchemeGrowth, OfTheWholeStepIsThatOfSingleStepsWhereDampersCouple) {
   const auto linear =
       std::make_shared<const LinearisedSystem>(system, 0.0, cloth.ivp.y0.head(n), cloth.ivp.y0.tail(n));
   const LinearModes modes = linear_modes(*linear, 0.0, Vector::Zero(2 * n), 100);
-  ASSERT_GT(modes.coupling, 0.01);
+  ASSERT_GT(modes.coupling, 1e-3);
   const double h = 1.5 / modes.spectral_radius;
   for (const char* name : {"velocity_verlet", "symplectic_euler", "blanes_moan4"}) {
     const double by_stages = splitting(name).of_system(modes, h, linear);
