@@ -2,10 +2,13 @@
 
 #include "study/agreement.hpp"
 #include "study/convergence.hpp"
+#include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
 #include "study/stability.hpp"
+#include "study/stiffness.hpp"
 #include "study/sweep.hpp"
+#include "study/work_precision.hpp"
 
 namespace fw::catalog {
 
@@ -14,7 +17,8 @@ namespace {
 /// Every kind but the one that is made of the others.
 std::vector<study::StudyKind> plain_kinds() {
   return {study::convergence_kind(), study::agreement_kind(), study::linear_solver_kind(),
-          study::simulate_kind(), study::stability_kind()};
+          study::jacobian_kind(),    study::simulate_kind(),  study::work_precision_kind(),
+          study::stiffness_kind(),   study::stability_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

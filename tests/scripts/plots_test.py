@@ -16,12 +16,15 @@ import matplotlib.colors as colors  # noqa: E402
 import numpy  # noqa: E402
 import plot_agreement  # noqa: E402
 import plot_convergence  # noqa: E402
+import plot_jacobian  # noqa: E402
 import plot_linear_solver  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
 import plot_stability  # noqa: E402
+import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
+import plot_work_precision  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
 
@@ -129,6 +132,100 @@ class Agreement(PlotTest):
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(lower))[1].all())
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(share))[1].all())
         self.assertIn("1 methods", figure.axes[0].get_xlabel())
+
+
+class WorkPrecision(PlotTest):
+    def figures(self, **options):
+        path = self.folder / "work_precision.h5"
+        synthetic_results.work_precision(path, **options)
+        return self.draw(plot_work_precision, path)
+
+    def test_colours_the_methods_on_the_front_and_names_the_others(self):
+        figure, = self.figures()
+        legend = texts_of_legend(figure.axes[-1])
+        self.assertIn("rk4", legend)
+        self.assertNotIn("implicit_midpoint", legend)
+        self.assertTrue(any("implicit_midpoint" in text.get_text() for text in figure.axes[-1].texts))
+        lines = {line.get_color() for line in figure.axes[0].lines}
+        self.assertIn(plot_work_precision.PALE, lines)
+        self.assertIn(plot_style.PALETTE[0], lines)
+
+    def test_draws_factorisations_where_there_are_any(self):
+        titles = [axes.get_xlabel() for axes in self.figures()[0].axes]
+        self.assertEqual(titles, ["right-hand sides", "wall-clock time [s]", "factorisations", ""])
+        titles = [axes.get_xlabel() for axes in self.figures(factorisations=1)[0].axes]
+        self.assertEqual(titles, ["right-hand sides", "wall-clock time [s]", ""])
+
+
+class Stiffness(PlotTest):
+    def figures(self, **options):
+        path = self.folder / "stiffness.h5"
+        synthetic_results.stiffness(path, **options)
+        return self.draw(plot_stiffness, path)
+
+    def test_marks_where_implicit_methods_begin_to_pay(self):
+        cost, _ = self.figures()
+        self.assertEqual(sum("implicit pays" in text.get_text() for axes in cost.axes for text in axes.texts), 2)
+        cost, _ = self.figures(crosses=False)
+        self.assertEqual(sum("implicit pays" in text.get_text() for axes in cost.axes for text in axes.texts), 0)
+
+    def test_draws_every_order_of_the_map_at_its_step_and_eigenvalue(self):
+        _, orders = self.figures()
+        mesh, = orders.axes[0].collections
+        drawn = numpy.ma.filled(mesh.get_array().reshape(5, 5), numpy.nan)
+        steps = 0.1 / 2.0 ** numpy.arange(6)
+        expected = numpy.where(steps[None, 1:] * numpy.geomspace(10, 1000, 5)[:, None] < 1, 2.0, 1.0)
+        self.assertTrue((drawn == expected).all())
+        self.assertIn("not stiff 2.00 (2), stiff 1.00 (1)", orders.axes[0].get_title("left"))
+
+
+class Jacobian(PlotTest):
+    def setUp(self):
+        super().setUp()
+        path = self.folder / "jacobian.h5"
+        synthetic_results.jacobian(path)
+        self.figures = self.draw(plot_jacobian, path)
+
+    def test_has_a_figure_for_each_part(self):
+        self.assertEqual(len(self.figures), 6)
+        for figure in self.figures:
+            self.assertTrue(any("federwerk" in text.get_text() for text in figure.texts))
+
+    def test_draws_the_error_over_the_increment_and_the_slopes(self):
+        panel = self.figures[0].axes[0]
+        forward = panel.lines[0]
+        numpy.testing.assert_allclose(forward.get_ydata(), 0.3 * forward.get_xdata() + 1e-16 / forward.get_xdata())
+        self.assertEqual({text.get_text() for text in panel.texts}, {"slope 1", "slope 2", "slope −1", "analytic"})
+        self.assertEqual(panel.get_xlabel(), "increment h [typical length]")
+
+    def test_names_the_printed_formulas_and_draws_measured_over_predicted(self):
+        left, right = self.figures[1].axes[:2]
+        self.assertEqual(sum("printed" in text.get_text() for text in left.texts), 2)
+        numpy.testing.assert_array_equal(right.lines[0].get_xdata(), right.lines[0].get_ydata())
+
+    def test_draws_the_blocks_of_a_pattern(self):
+        image = self.figures[2].axes[0].images[1].get_array()
+        self.assertEqual(image.shape, (3, 3))
+        self.assertEqual(numpy.ma.masked_invalid(image).count(), 5)
+
+    def test_draws_the_limit_where_there_is_one(self):
+        exact, projected = self.figures[3].axes[:2]
+        predicted, found = exact.lines[:2]
+        numpy.testing.assert_array_equal(predicted.get_xdata(), found.get_xdata())
+        self.assertEqual(numpy.isfinite(predicted.get_xdata()).sum(), 2)
+        self.assertEqual(numpy.isfinite(projected.lines[0].get_xdata()).sum(), 0)
+        self.assertIn("predicted: 1/μ", texts_of_legend(exact))
+
+    def test_marks_failed_iterations_apart(self):
+        failures = self.figures[4].axes[0].collections[0].get_array()
+        eigenvalue = 1 - numpy.outer([200, 200 * (1 / 0.9 - 1), 0], numpy.geomspace(1e-3, 1, 7) ** 2)
+        self.assertEqual(numpy.ma.masked_invalid(failures).count(), numpy.count_nonzero(eigenvalue <= 0))
+
+    def test_marks_runs_that_stopped(self):
+        panel = self.figures[5].axes[0]
+        stopped = [line for line in panel.lines if line.get_marker() == "x" and len(line.get_xdata())]
+        self.assertEqual([len(line.get_xdata()) for line in stopped], [3])
+        self.assertIn("matrix indefinite", " ".join(texts_of_legend(panel)))
 
 
 class LinearSolver(PlotTest):
