@@ -5,6 +5,7 @@
 #include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
 #include "study/simulate.hpp"
+#include "study/stability.hpp"
 #include "study/stiffness.hpp"
 #include "study/sweep.hpp"
 #include "study/work_precision.hpp"
@@ -17,7 +18,7 @@ namespace {
 std::vector<study::StudyKind> plain_kinds() {
   return {study::convergence_kind(), study::agreement_kind(), study::linear_solver_kind(),
           study::jacobian_kind(),    study::simulate_kind(),  study::work_precision_kind(),
-          study::stiffness_kind()};
+          study::stiffness_kind(),   study::stability_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

@@ -202,6 +202,29 @@ lower = [0.0, -1.0]
 upper = [1.0, 1.0]
 counts = [3, 2]
 """,
+    # regions with and without a root locus, a limit on a scene, a law
+    "stability": """
+kind = "stability"
+title = "Stability"
+methods = ["rk4", "adams_bashforth3"]
+
+[regions]
+points = 11
+
+[limits]
+fewest_steps = 100
+farthest = 20.0
+
+[[problem]]
+scene = "SCENES/taut_chain.toml"
+t_end = 0.1
+linearise = true
+
+[[problem]]
+name = "dahlquist"
+vary = { parameter = "lambda", values = [-1.0, -2.0, -4.0] }
+exponent = -1.0
+""",
 }
 SIMULATED_SCENES = ["double_spring", "box_and_anchor", "refined_chain_strain", "grid_on_sphere"]
 
@@ -257,7 +280,7 @@ class ResultsSchema(unittest.TestCase):
         for name in (*STUDIES, *SIMULATED_SCENES):
             with h5py.File(self.folder / f"{name}.h5") as file:
                 file.visititems(lambda path, item: found.add(path) if isinstance(item, h5py.Dataset) else None)
-        for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness"):
+        for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness", "stability"):
             section = DESCRIPTION.split(f"## Kind `{kind}`")[1].split("\n## ")[0]
             rows = [line for line in section.splitlines() if line.startswith("| `/")]
             self.assertGreater(len(rows), 15, kind)
@@ -266,7 +289,8 @@ class ResultsSchema(unittest.TestCase):
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
-        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories"), ("trajectory", "double_spring")):
+        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories"), ("stability", "stability"),
+                           ("trajectory", "double_spring")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")
             section, separator, after = section.partition("\n## ")
             for line in [line for line in section.splitlines() if line.startswith("| `/")]:

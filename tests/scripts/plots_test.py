@@ -20,6 +20,7 @@ import plot_jacobian  # noqa: E402
 import plot_linear_solver  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
+import plot_stability  # noqa: E402
 import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
@@ -247,6 +248,41 @@ class LinearSolver(PlotTest):
         self.assertEqual(seconds.get_ylabel(), "set-up and solve [ms]")
         self.assertEqual(len(simulation.axes[0].lines), 1)
         self.assertEqual(spectra.axes[0].get_ylabel(), "eigenvalue [kg]")
+
+
+class Stability(PlotTest):
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "stability.h5"
+        synthetic_results.stability(self.path)
+
+    def test_draws_regions_stars_axis_limits_thresholds_and_laws(self):
+        answer = self.script("plot_results.py", self.path)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(len(list(self.folder.glob("stability-*.png"))), 6)
+
+    def test_regions_have_equal_axes_and_name_their_intervals(self):
+        regions = self.draw(plot_stability, self.path)[0]
+        for panel in regions.axes[:2]:
+            self.assertEqual(panel.get_aspect(), 1.0)
+        self.assertEqual(regions.axes[0].get_xlabel(), "Re hλ\nreal axis 2, imaginary 0")
+        self.assertEqual(regions.axes[1].get_xlabel(), "Re hλ\nreal axis ∞, imaginary ∞")
+
+    def test_limits_stand_where_they_are_and_at_the_edges(self):
+        limits = self.draw(plot_stability, self.path)[3]
+        undamped, damped = limits.axes[:2]
+        self.assertEqual(undamped.get_title(loc="left"), "undamped")
+        explicit = [line.get_xdata()[0] for line in damped.lines if line.get_ydata()[0] == 0]
+        numpy.testing.assert_allclose(explicit, [0.8, 0.808])  # h |λ|
+        never = [line.get_xdata()[0] for line in undamped.lines if line.get_ydata()[0] == 0]
+        self.assertTrue(all(value < 0.4 for value in never))
+        always = [line.get_xdata()[0] for line in undamped.lines if line.get_ydata()[0] == 1]
+        self.assertTrue(all(value > 1.9 for value in always))
+
+    def test_thresholds_say_the_theory_and_laws_have_a_reference_slope(self):
+        thresholds, laws = self.draw(plot_stability, self.path)[4:]
+        self.assertEqual(texts_of_legend(thresholds.axes[0])[::2], ["theory h = 1/k", "theory h = 2/k"])
+        self.assertIn("slope -1", [text.get_text() for text in laws.axes[0].texts])
 
 
 class Refusals(PlotTest):

@@ -199,6 +199,47 @@ def linear_solver(path):
             put(summary, name, list(column))
 
 
+def stability(path):
+    """Regions of two schemes, their limits on two problems (one unstable at every step), and S11's thresholds."""
+    nan = numpy.nan
+    names = ["case", "part", "problem", "method", "basis", "real_interval", "imaginary_interval", "spectral_radius",
+             "predicted_limit", "observed_limit", "ratio", "expected_exponent", "verdict"]
+    rows = []
+    axis_x, axis_y, distance = numpy.linspace(-4, 1.9, 31), numpy.linspace(-3, 3, 31), numpy.linspace(0, 4, 41)
+    z = axis_x[None, :] + 1j * axis_y[:, None]
+    factor = {"explicit_euler": lambda w: 1 + w, "trapezoidal": lambda w: (1 + w / 2) / (1 - w / 2)}
+    with new_file(path, "stability", "Stability") as file:
+        for method, R in factor.items():
+            case = file.create_group(f"cases/region-{method}")
+            put(case, "z_real", axis_x)
+            put(case, "z_imaginary", axis_y)
+            put(case, "growth", abs(R(z)))
+            put(case, "order_star", abs(R(z) * numpy.exp(-z)))
+            put(case, "distance", distance)
+            put(case, "growth_real_axis", abs(R(-distance)))
+            put(case, "growth_imaginary_axis", abs(R(1j * distance)))
+            ends = (2.0, 0.0) if method == "explicit_euler" else (numpy.inf, numpy.inf)
+            rows.append((f"region-{method}", "region", "", method, "R(z)", *ends, nan, nan, nan, nan, nan, "holds"))
+            for problem, limit in (("undamped", 0.0), ("damped", 0.04)):
+                predicted = limit if method == "explicit_euler" else numpy.inf
+                file.create_group(f"cases/{problem}-{method}")
+                rows.append((f"{problem}-{method}", "limit", problem, method, "R(z)", nan, nan, 20.0, predicted,
+                             1.01 * predicted if predicted else 0.0, 1.01, nan, "holds"))
+            case = file.create_group(f"cases/decay-{method}")
+            k = numpy.array([1.0, 10.0, 100.0])
+            limit = 2 / k if method == "explicit_euler" else numpy.full(3, numpy.inf)
+            put(case, "parameter", -k, "SI").attrs["name"] = "lambda"
+            put(case, "spectral_radius", k, "1/s")
+            for what, values in (("predicted_limit", limit), ("observed_limit", 1.001 * limit),
+                                 ("monotone_predicted", 1 / k if method == "explicit_euler" else 2 / k),
+                                 ("monotone_observed", 1.002 / k if method == "explicit_euler" else 2 / k)):
+                put(case, what, values, "s")
+            rows.append((f"decay-{method}", "law", "decay", method, "R(z)", nan, nan, nan, nan, nan, nan, -1.0, "holds"))
+        summary = file.create_group("summary")
+        for name, column in zip(names, zip(*rows)):
+            put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
+
+
 def work_precision(path, factorisations=40):
     """Two ladders on one problem: an explicit method of order 4 on the front, an implicit one of order 2 above it."""
     work = numpy.array([100, 200, 400, 800])
@@ -352,6 +393,7 @@ if __name__ == "__main__":
     for name, write in ALL.items():
         write(folder / f"{name}.h5")
     linear_solver(folder / "linear_solver.h5")
+    stability(folder / "stability.h5")
     work_precision(folder / "work_precision.h5")
     stiffness(folder / "stiffness.h5")
     jacobian(folder / "jacobian.h5")
