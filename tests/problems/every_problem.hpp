@@ -17,6 +17,7 @@ inline std::vector<ProblemEntry> every_problem() {
   return {dahlquist_entry(),
           dahlquist_complex_entry(),
           rotation_entry(),
+          moving_centre_entry(),
           prothero_robinson_entry(),
           harmonic_oscillator_entry(),
           damped_oscillator_entry(),
