@@ -8,17 +8,16 @@
 #include <memory>
 #include <set>
 
-#include "analysis/reference_cache.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
-#include "app/progress_bar.hpp"
+#include "app/study_run.hpp"
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "core/sha256.hpp"
-#include "store/study_store.hpp"
+#include "store/study_file.hpp"
 #include "store/write_target.hpp"
-#include "study/runner.hpp"
+#include "study/comparison.hpp"
 
 namespace fw::app {
 
@@ -28,7 +27,8 @@ struct RunArguments {
   std::vector<std::string> studies;
   std::string directory = "results";
   int jobs = 1;
-  bool quick = false, force = false;
+  double time_limit = 0.0;
+  bool quick = false, force = false, directory_given = false;
 };
 
 /// SHA-256 of the executable: cases that other code computed are not taken for finished.
@@ -45,10 +45,28 @@ std::string program_identity() {
   return sha256_hex(bytes);
 }
 
-struct PlannedStudy {
-  std::filesystem::path output;  ///< result file
-  study::Plan plan;
-};
+/// Whether the argument is a result file, whose study is repeated; what HDF5 cannot open is a study file.
+bool is_result_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  char start[8] = {};
+  file.read(start, sizeof start);
+  return file.gcount() == sizeof start && std::string_view(start, sizeof start) == "\x89HDF\r\n\x1a\n";
+}
+
+/// The study that made a result file; its own directory receives the repetition unless another one was named.
+PlannedStudy read_result_file(const std::filesystem::path& path, const RunArguments& arguments,
+                              const catalog::BuiltinCatalog& catalog) {
+  const store::StudyFile file = store::read_study(path);
+  const CheckedTable spec =
+      CheckedTable::parse_text(file.result.spec, fmt::format("{} (spec)", path.string()));
+  const std::filesystem::path directory =
+      arguments.directory_given ? std::filesystem::path(arguments.directory) : path.parent_path();
+  return {
+      .source = path.string(),
+      .output = directory / path.stem().concat(".repeated.h5"),
+      .plan = study::read_plan(spec, catalog::study_kinds(), catalog, file.result.quick || arguments.quick),
+      .repeats = true};
+}
 
 /// Reads every study before the first one runs, so that a mistake in the last is found at once.
 std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
@@ -56,10 +74,17 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
   std::vector<PlannedStudy> studies;
   std::set<std::filesystem::path> outputs;
   for (const std::string& path : arguments.studies) {
-    const CheckedTable spec = CheckedTable::parse_file(path);
-    PlannedStudy study{
-        std::filesystem::path(arguments.directory) / std::filesystem::path(path).stem().concat(".h5"),
-        study::read_plan(spec, catalog::study_kinds(), catalog, arguments.quick)};
+    PlannedStudy study;
+    if (is_result_file(path)) {
+      study = read_result_file(path, arguments, catalog);
+    } else {
+      const CheckedTable spec = CheckedTable::parse_file(path);
+      study = {.source = path,
+               .output = std::filesystem::path(arguments.directory) /
+                         std::filesystem::path(path).stem().concat(".h5"),
+               .plan = study::read_plan(spec, catalog::study_kinds(), catalog, arguments.quick),
+               .repeats = false};
+    }
     if (!outputs.insert(study.output).second) {
       throw InputError(
           fmt::format("{}: another study of this run also writes {}; expected different file names", path,
@@ -73,77 +98,82 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
   return studies;
 }
 
-struct Tally {
-  std::size_t holds = 0, fails = 0, not_applicable = 0, kept = 0;
-};
+void make_directories(const std::vector<PlannedStudy>& studies) {
+  for (const PlannedStudy& planned : studies) {
+    const std::filesystem::path directory = planned.output.parent_path();
+    if (directory.empty()) continue;
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (!error) continue;
+    const std::string message =
+        fmt::format("cannot make the directory \"{}\": {}", directory.string(), error.message());
+    if (error == std::errc::no_space_on_device || error == std::errc::io_error) throw SystemError(message);
+    throw InputError(message);
+  }
+}
 
-Tally run_study(const PlannedStudy& planned, const RunArguments& arguments, const std::string& command_line,
-                const std::string& program, const std::atomic<bool>& interrupted, bool& complete) {
-  store::StudyStore store(planned.output, arguments.force ? store::StudyStore::Earlier::forget
-                                                          : store::StudyStore::Earlier::reuse);
-  fmt::print("{} ({} cases)\n", planned.plan.title, planned.plan.cases.size());
-  ProgressBar bar("cases");
-  Tally tally;
-  std::size_t done = 0;
-  study::RunOptions options;
-  options.context = {.interrupted = &interrupted,
-                     .reference_cache = analysis::ReferenceCache::default_directory()};
-  options.program = program;
-  options.force = arguments.force;
-  options.jobs = arguments.jobs;
-  options.started = [&](std::size_t, std::size_t total, const std::string& id) {
-    bar.update(static_cast<double>(done) / static_cast<double>(total), static_cast<double>(done), id);
-  };
-  options.finished = [&](const study::CaseReport& report) {
-    bar.clear();
-    ++done;
-    const study::Verdict verdict = report.result.verdict;
-    tally.holds += verdict == study::Verdict::holds;
-    tally.fails += verdict == study::Verdict::fails;
-    tally.not_applicable += verdict == study::Verdict::not_applicable;
-    tally.kept += report.kept;
-    fmt::print("  [{}/{}] {:<14} {}  {}{}\n", done, report.total, to_string(verdict), report.result.id,
-               report.result.reason, report.kept ? "  (kept)" : fmt::format("  ({:.1f} s)", report.seconds));
-    std::fflush(stdout);
-  };
-  const study::StudyResult result = study::run_plan(planned.plan, store, options);
-  bar.clear();
-  store.write(command_line, result);
-  complete = result.complete;
-  fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds,
-             tally.fails, tally.not_applicable,
-             tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
-  return tally;
+/// Says in what a repeated study differs from the file it comes from; whether it differs.
+bool report_differences(const PlannedStudy& planned) {
+  constexpr std::size_t most_lines = 20;
+  const study::StudyResult before = store::read_study(planned.source).result;
+  const study::Comparison comparison = study::compare(before, store::read_study(planned.output).result);
+  if (comparison.differences.empty()) {
+    fmt::print("{}: repeated, {} columns of {} cases are the same bit for bit\n\n", planned.source,
+               comparison.columns, comparison.cases);
+    return false;
+  }
+  fmt::print("{}: repeated, {} of {} columns of {} cases differ\n", planned.source,
+             comparison.differences.size(), comparison.columns, comparison.cases);
+  for (std::size_t k = 0; k < std::min(most_lines, comparison.differences.size()); ++k) {
+    fmt::print("  {}\n", comparison.differences[k]);
+  }
+  if (comparison.differences.size() > most_lines) {
+    fmt::print("  and {} more\n", comparison.differences.size() - most_lines);
+  }
+  fmt::print("\n");
+  return true;
 }
 
 int run(const RunArguments& arguments, const std::string& command_line) {
   if (arguments.jobs < 1)
     throw InputError(fmt::format("--jobs: found {}, expected at least 1", arguments.jobs));
+  if (!(arguments.time_limit >= 0.0))
+    throw InputError(fmt::format("--time-limit: found {}, expected at least 0", arguments.time_limit));
   const std::vector<PlannedStudy> studies = read_studies(arguments);
-  std::error_code error;
-  std::filesystem::create_directories(arguments.directory, error);
-  if (error) {
-    const std::string message =
-        fmt::format("cannot make the directory \"{}\": {}", arguments.directory, error.message());
-    if (error == std::errc::no_space_on_device || error == std::errc::io_error) throw SystemError(message);
-    throw InputError(message);
-  }
+  make_directories(studies);
   for (const PlannedStudy& planned : studies) store::check_writable_target(planned.output);
   const std::atomic<bool>& interrupted = install_interrupt_flag();
-  const std::string program = program_identity();
-  std::size_t fails = 0;
-  for (std::size_t k = 0; k < studies.size(); ++k) {
-    const PlannedStudy& planned = studies[k];
-    bool complete = true;
-    fails += run_study(planned, arguments, command_line, program, interrupted, complete).fails;
-    const bool is_last = k + 1 == studies.size();
-    if (interrupted && !(complete && is_last)) {
+  const StudyRunOptions options{.command_line = command_line,
+                                .program = program_identity(),
+                                .jobs = arguments.jobs,
+                                .time_limit = arguments.time_limit,
+                                .force = arguments.force};
+  std::vector<Tally> tallies;
+  bool differs = false;
+  for (const PlannedStudy& planned : studies) {
+    tallies.push_back(run_study(planned, options, interrupted));
+    if (tallies.back().complete && planned.repeats) differs |= report_differences(planned);
+    const bool is_last = tallies.size() == studies.size();
+    if (interrupted && !(tallies.back().complete && is_last)) {
       fmt::print(stderr,
                  "federwerk: interrupted; finished cases are kept, the same command goes on from here\n");
       return exit_failure;
     }
   }
-  return fails > 0 ? exit_verdict_fails : exit_success;
+  print_summary(studies, tallies);
+  std::size_t fails = 0, not_computed = 0;
+  for (const Tally& tally : tallies) {
+    fails += tally.fails;
+    not_computed += tally.not_computed;
+  }
+  if (not_computed > 0) {
+    fmt::print(stderr,
+               "federwerk: {} case{} could not be computed; the same command tries {} again, finished cases "
+               "are kept\n",
+               not_computed, not_computed == 1 ? "" : "s", not_computed == 1 ? "it" : "them");
+    return exit_failure;
+  }
+  return fails > 0 || differs ? exit_verdict_fails : exit_success;
 }
 
 }  // namespace
@@ -151,18 +181,26 @@ int run(const RunArguments& arguments, const std::string& command_line) {
 void add_run_command(CLI::App& app, Action& action, const std::string& command_line) {
   CLI::App* command = app.add_subcommand("run", "Runs studies; finished cases are kept and not run again");
   auto arguments = std::make_shared<RunArguments>();
-  command->add_option("study", arguments->studies, "Study files (TOML)")->required()->type_name("STUDY.toml");
-  command->add_option("-o,--output", arguments->directory, "Directory for result files")
-      ->capture_default_str()
-      ->type_name("DIR");
+  command
+      ->add_option("study", arguments->studies,
+                   "Study files (TOML), or result files (HDF5), whose studies are repeated and compared")
+      ->required()
+      ->type_name("STUDY.toml");
+  CLI::Option* directory =
+      command->add_option("-o,--output", arguments->directory, "Directory for result files")
+          ->capture_default_str()
+          ->type_name("DIR");
+  command->add_option("--time-limit", arguments->time_limit, "Ends a case that runs longer [s]")
+      ->type_name("S");
   command
       ->add_option("--jobs", arguments->jobs,
-                   "Cases that run at the same time; timings are honest with 1 only")
+                   "Cases that run at the same time; cases that are timed run alone")
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--quick", arguments->quick, "Shrink each study by its own [quick] section");
   command->add_flag("--force", arguments->force, "Run also the cases that are finished");
-  command->callback([arguments, &action, command_line] {
+  command->callback([arguments, directory, &action, command_line] {
+    arguments->directory_given = directory->count() > 0;
     action = [arguments, command_line] { return run(*arguments, command_line); };
   });
 }

@@ -7,13 +7,29 @@
 #include "study/linear_solver.hpp"
 #include "study/propagation.hpp"
 #include "study/simulate.hpp"
+#include "study/sweep.hpp"
 
 namespace fw::catalog {
 
+namespace {
+
+/// Every kind but the one that is made of the others.
+std::vector<study::StudyKind> plain_kinds() {
+  return {study::convergence_kind(), study::agreement_kind(),   study::energy_kind(),
+          study::dissipation_kind(), study::propagation_kind(), study::linear_solver_kind(),
+          study::simulate_kind()};
+}
+
+std::vector<study::StudyKind> all_kinds() {
+  std::vector<study::StudyKind> kinds = plain_kinds();
+  kinds.push_back(study::sweep_kind(plain_kinds()));
+  return kinds;
+}
+
+}  // namespace
+
 const std::vector<study::StudyKind>& study_kinds() {
-  static const std::vector<study::StudyKind> list = {
-      study::convergence_kind(), study::agreement_kind(),     study::dissipation_kind(), study::energy_kind(),
-      study::propagation_kind(), study::linear_solver_kind(), study::simulate_kind()};
+  static const std::vector<study::StudyKind> list = all_kinds();
   return list;
 }
 

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/worker_process.hpp"
+#include "linalg/petsc_running.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -225,6 +227,27 @@ PetscOptionText::PetscOptionText(const std::string& text) : text_(text) {
     PetscOptionsDestroy(&options_);
     detail::throw_bad_option(*this, failure);
   }
+}
+
+bool petsc_is_running() {
+  return detail::petsc_is_running();
+}
+
+void check_petsc_options(const std::string& text) {
+  if (text.empty()) return;
+  if (detail::petsc_is_running()) {
+    const PetscOptionText checked(text);
+    return;
+  }
+  const std::string message = answer_of_a_process([&]() -> std::string {
+    try {
+      const PetscOptionText checked(text);
+      return "";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  });
+  if (!message.empty()) throw InputError(message);
 }
 
 PetscOptionText::~PetscOptionText() {

@@ -76,6 +76,11 @@ class PetscSession {
   bool pushed_ = false;
 };
 
+/// Throws InputError where `PetscOptionText(text)` does. Starts PETSc for that in a process of its own where
+/// it is not running yet: MPI does not survive a fork, and `federwerk run` forks workers after it has read
+/// its studies.
+void check_petsc_options(const std::string& text);
+
 /// Turns PETSc's failures inside `call` to InputError where the options are to blame. `options` are named.
 template <class Call>
 void with_options_to_blame(const PetscOptionText& options, Call call);

@@ -208,7 +208,7 @@ class PetscSolver::Engine {
 };
 
 PetscSolver::PetscSolver(LinearSolverOptions options) : options_(std::move(options)) {
-  const PetscOptionText checked(options_.petsc_options);
+  check_petsc_options(options_.petsc_options);
   if (!(options_.relative_tolerance > 0.0) || !(options_.relative_tolerance < 1.0)) {
     throw InputError(fmt::format("relative tolerance of the linear solver: found {}, expected 0 < it < 1",
                                  options_.relative_tolerance));

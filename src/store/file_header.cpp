@@ -22,6 +22,7 @@ void write_header(hid_t file, const FileHeader& header) {
   write_attribute(file, "spec", header.spec);
   write_attribute(file, "spec_sha256", sha256_hex(header.spec));
   write_attribute(file, "seed", header.seed);
+  write_attribute(file, "quick", std::int64_t{header.quick});
 }
 
 void write_status(hid_t file, bool complete) {

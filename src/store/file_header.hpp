@@ -17,6 +17,7 @@ struct FileHeader {
   std::string command_line;  ///< as the user typed it
   std::string spec;          ///< the resolved input as TOML text
   std::int64_t seed = 0;     ///< of all random numbers
+  bool quick = false;        ///< shrunk by its own [quick] section
 };
 
 /// The root attributes of docs/results_schema.md but `status`. Throws LibraryError.

@@ -17,7 +17,8 @@ void write_study(const std::filesystem::path& path, const std::string& command_l
                              .title = result.title,
                              .command_line = command_line,
                              .spec = result.spec,
-                             .seed = result.seed});
+                             .seed = result.seed,
+                             .quick = result.quick});
     write_cases(file.id(), result.cases);
     write_status(file.id(), result.complete);
   });
@@ -36,6 +37,7 @@ StudyFile read_study(const std::filesystem::path& path) {
   study.result.title = text_of(file.attributes(), "title");
   study.result.spec = text_of(file.attributes(), "spec");
   study.result.seed = integer_of(file.attributes(), "seed", 0);
+  study.result.quick = integer_of(file.attributes(), "quick", 0) != 0;
   study.result.complete = text_of(file.attributes(), "status") == "complete";
   try {
     study.result.cases = read_cases(file.id());

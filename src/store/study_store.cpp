@@ -52,6 +52,7 @@ StudyStore::StudyStore(fs::path output, Earlier earlier)
     if (InputFile(output_).kind() != "trajectory") {
       for (CaseResult& result : read_study(output_).result.cases) {
         std::string key = result.key;
+        if (key.empty()) continue;  // it could not be computed
         earlier_.insert_or_assign(std::move(key), std::move(result));
       }
     }

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/heap_usage.hpp"
+#include "core/worker_process.hpp"
 #include "linalg/linear_solver.hpp"
 #include "study/problem_spec.hpp"
 #include "study/step_spectrum.hpp"
@@ -353,9 +354,8 @@ std::vector<StudyProblem> read_step_problems(const CheckedTable& spec, const Cat
   return problems;
 }
 
-/// Solves a small system, so that options which nobody asks for are found before anything runs: PETSc knows
-/// them only then. How the solve ends does not matter.
-void probe(const linalg::LinearSolverOptions& options) {
+/// Solves a small system. How that ends does not matter.
+void solve_small_system(const linalg::LinearSolverOptions& options) {
   const Index n = 12;
   SparseMatrix A(n, n);
   for (Index i = 0; i < n; ++i) {
@@ -370,15 +370,32 @@ void probe(const linalg::LinearSolverOptions& options) {
   if (solver->factorise(A, work).ok()) solver->solve(Vector::Ones(n), x, work);
 }
 
+/// What is wrong with the options of a solver, or nothing. PETSc knows which ones nobody asks for only when
+/// they were used, so they are, in a process of its own (see `linalg::petsc_is_running`).
+std::string probe(const std::string& call) {
+  const linalg::LinearSolverOptions options = linalg::read_linear_solver(call);
+  if (options.petsc_options.empty()) return "";
+  return answer_of_a_process([&]() -> std::string {
+    try {
+      solve_small_system(options);
+      return "";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  });
+}
+
 std::vector<std::string> read_solvers(const CheckedTable& spec) {
   std::vector<std::string> solvers = spec.strings("solvers");
   if (solvers.empty()) spec.fail("solvers", "found an empty list, expected at least one solver");
   for (std::size_t i = 0; i < solvers.size(); ++i) {
+    std::string message;
     try {
-      probe(linalg::read_linear_solver(solvers[i]));
+      message = probe(solvers[i]);
     } catch (const InputError& error) {
-      spec.fail("solvers", {i}, error.what());
+      message = error.what();
     }
+    if (!message.empty()) spec.fail("solvers", {i}, message);
   }
   return solvers;
 }
@@ -401,9 +418,11 @@ void read_linear_solver_study(const CheckedTable& spec, const Catalog& catalog, 
       for (const std::string& call : solvers) {
         plan.cases.push_back({.id = group_name(name + "-" + call),
                               .identity = identity + "solver = " + call + "\n",
-                              .run = [system, call, settings](const RunContext& context) {
-                                return SolverCase(*system, call, settings, context).run();
-                              }});
+                              .run =
+                                  [system, call, settings](const RunContext& context) {
+                                    return SolverCase(*system, call, settings, context).run();
+                                  },
+                              .is_timed = true});
       }
     }
   }

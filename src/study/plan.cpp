@@ -17,6 +17,7 @@ Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, co
   Plan plan;
   plan.kind = spec.choice("kind", names);
   plan.title = spec.string("title");
+  plan.quick = quick;
   plan.seed = spec.integer_or("seed", 0, 0);
   plan.time_limit = spec.number_or("time_limit", 0.0, NumberRule::nonnegative);
   for (const StudyKind& kind : kinds) {

@@ -43,6 +43,7 @@ struct Plan {
   std::string title;
   std::string spec;  ///< the resolved input as TOML text
   std::int64_t seed = 0;
+  bool quick = false;                   ///< shrunk by its own [quick] section
   double time_limit = 0.0;              ///< [s] of one case; 0: none
   std::vector<std::string> warnings{};  ///< what is legal but has no effect, one sentence each
   std::vector<PlannedCase> cases{};

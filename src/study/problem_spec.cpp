@@ -11,8 +11,10 @@
 
 #include "core/error.hpp"
 #include "core/toml_assignment.hpp"
+#include "core/worker_process.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "scene/scene.hpp"
+#include "study/parameter_values.hpp"
 
 namespace fw::study {
 
@@ -62,6 +64,18 @@ SceneText scene_text_of(const CheckedTable& section) {
   return {path.string(), scene::read_scene(path).resolved_toml};
 }
 
+/// The values of a table [problem.set], whose keys are those of the scene file.
+void collect(const CheckedTable& table, const std::string& path, std::vector<TomlAssignment>& assignments) {
+  for (const std::string& key : table.keys()) {
+    const std::string full = path.empty() ? key : path + "." + key;
+    if (table.is_table(key)) {
+      collect(table.table(key), full, assignments);
+      continue;
+    }
+    assignments.push_back({full, table.number(key)});
+  }
+}
+
 /// The number that a member of a family has in place of the problem's own.
 struct Variation {
   std::string parameter;
@@ -82,11 +96,11 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
     try {
       SceneText given = scene_text_of(section);
       const std::string& kept = section.string_or("scene_text", given.text);
-      if (variation) {
-        const TomlAssignment assignment{variation->parameter, variation->value};
-        given.text = toml_with(kept, given.name, {assignment});
-        given.name += fmt::format(" with {}", assignment.text());
-      }
+      std::vector<TomlAssignment> assignments;
+      if (section.has("set")) collect(section.table("set"), "", assignments);
+      if (variation) assignments.push_back({variation->parameter, variation->value});
+      if (!assignments.empty()) given.text = toml_with(kept, given.name, assignments);
+      for (const TomlAssignment& assignment : assignments) given.name += " with " + assignment.text();
       scene::Scene scene = scene::parse_scene(given.text, given.name);
       warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
       entry.scene_toml = scene.resolved_toml;
@@ -118,27 +132,39 @@ StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
 }
 
 /// Options in PETSc's notation are known to be wrong only when they are used: a few steps of a small system.
-void probe(const Integrator& integrator, const Catalog& catalog) {
-  Ivp ivp = catalog.problem("linear_chain", {}).ivp;
-  ivp.t1 = ivp.t0 + 0.01;
-  if (!why_not_applicable(integrator.info(), *ivp.system).empty()) return;
-  NullObserver observer;
-  if (integrator.info().has_fixed_step) {
-    integrator.solve(ivp, FixedStep{.step = 0.005}, observer);
-  } else {
-    integrator.solve(ivp, AdaptiveStep{}, observer);
-  }
+/// PETSc and MPI are started for that in a process of their own, since workers are forked from this one. The
+/// message of what is wrong, or nothing.
+std::string probe(const std::string& call, const Catalog& catalog) {
+  return answer_of_a_process([&]() -> std::string {
+    try {
+      const std::unique_ptr<Integrator> integrator = catalog.method(call);
+      Ivp ivp = catalog.problem("linear_chain", {}).ivp;
+      ivp.t1 = ivp.t0 + 0.01;
+      if (!why_not_applicable(integrator->info(), *ivp.system).empty()) return "";
+      NullObserver observer;
+      if (integrator->info().has_fixed_step) {
+        integrator->solve(ivp, FixedStep{.step = 0.005}, observer);
+      } else {
+        integrator->solve(ivp, AdaptiveStep{}, observer);
+      }
+      return "";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  });
 }
 
 /// Throws InputError that names the entry where a call is not one of a method.
 void check_call(const CheckedTable& spec, const std::string& key, std::size_t index, const std::string& call,
                 const Catalog& catalog) {
+  std::string message;
   try {
-    const std::unique_ptr<Integrator> integrator = catalog.method(call);
-    if (call.find("petsc=") != std::string::npos) probe(*integrator, catalog);
+    catalog.method(call);
+    if (call.find("petsc=") != std::string::npos) message = probe(call, catalog);
   } catch (const InputError& error) {
-    spec.fail(key, {index}, error.what());
+    message = error.what();
   }
+  if (!message.empty()) spec.fail(key, {index}, message);
 }
 
 /// Whether `text` is `pattern`, in which each * stands for any letters.
@@ -181,26 +207,6 @@ std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog&
   return problems;
 }
 
-namespace {
-
-std::vector<double> read_values(const CheckedTable& vary) {
-  if (vary.has("values")) {
-    std::vector<double> values = vary.numbers("values");
-    if (values.empty()) vary.fail("values", "found an empty list, expected at least one number");
-    return values;
-  }
-  const double from = vary.positive_number("from"), to = vary.positive_number("to");
-  const std::int64_t count = vary.integer("count", 2, 10'000);
-  std::vector<double> values;
-  for (std::int64_t k = 0; k < count; ++k) {
-    values.push_back(from * std::pow(to / from, static_cast<double>(k) / static_cast<double>(count - 1)));
-  }
-  values.back() = to;
-  return values;
-}
-
-}  // namespace
-
 std::vector<ProblemFamily> read_problem_families(const CheckedTable& spec, const Catalog& catalog,
                                                  std::vector<std::string>& warnings) {
   std::vector<ProblemFamily> families;
@@ -214,7 +220,7 @@ std::vector<ProblemFamily> read_problem_families(const CheckedTable& spec, const
     }
     const CheckedTable vary = section.table("vary");
     family.parameter = vary.string("parameter");
-    family.values = read_values(vary);
+    family.values = read_parameter_values(vary);
     const std::string key = family.parameter.substr(family.parameter.find_last_of('.') + 1);
     for (const double value : family.values) {
       StudyProblem& member = family.members.emplace_back(

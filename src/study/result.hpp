@@ -40,7 +40,8 @@ struct SummaryCell {
 /// names, units and types, in the same order, in every case of a study; "verdict" and "reason" among them).
 struct CaseResult {
   std::string id;   ///< group name in the file, unique in the study: "<problem>-<method>", no '/'
-  std::string key;  ///< SHA-256 of the resolved case: what makes it the same case in another run
+  std::string key;  ///< SHA-256 of the resolved case: what makes it the same case in another run; empty if it
+                    ///< could not be computed
   std::vector<Column> columns;
   std::vector<SummaryCell> summary;
   Verdict verdict = Verdict::not_applicable;
@@ -53,6 +54,7 @@ struct StudyResult {
   std::string title;
   std::string spec;  ///< the resolved input as TOML text
   std::int64_t seed = 0;
+  bool quick = false;    ///< shrunk by its own [quick] section
   bool complete = true;  ///< false if cases are missing (interrupted)
   std::vector<CaseResult> cases;
 };

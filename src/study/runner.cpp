@@ -1,23 +1,35 @@
 #include "study/runner.hpp"
 
+#include <fmt/format.h>
+#include <poll.h>
+
 #include <algorithm>
-#include <atomic>
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <limits>
-#include <mutex>
+#include <memory>
+#include <new>
 #include <optional>
 #include <system_error>
-#include <thread>
 
 #include "core/error.hpp"
 #include "core/sha256.hpp"
+#include "core/worker_process.hpp"
+#include "linalg/petsc_running.hpp"
+#include "study/case_message.hpp"
 
 namespace fw::study {
 
 namespace {
 
-/// Gives cases that ended by an exception the columns of one that went well, so that the summary stays a
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Gives cases that could not be computed the columns of one that went well, so that the summary stays a
 /// table.
 void complete_rows(StudyResult& study) {
   const auto is_complete = [](const CaseResult& result) { return !result.summary.empty(); };
@@ -45,35 +57,198 @@ void complete_rows(StudyResult& study) {
   }
 }
 
-/// The run of one plan, shared by its threads.
+/// The first letter of a worker's answer.
+constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i';
+
+/// Runs a case in the worker; whatever happens is an answer.
+std::string answer_of(const PlannedCase& planned, const RunContext& context) {
+  try {
+    return is_result + encode(planned.run(context));
+  } catch (const Interrupted&) {
+    return std::string(1, is_interrupted);
+  } catch (const std::bad_alloc&) {
+    return is_failure + std::string("out of memory");
+  } catch (const std::exception& error) {
+    return is_failure + std::string(error.what());
+  } catch (...) {
+    return is_failure + std::string("an exception of unknown type");
+  }
+}
+
+/// The run of one plan.
 class Run {
  public:
   Run(const Plan& plan, CaseArchive& archive, const RunOptions& options)
-      : plan_(plan), archive_(archive), options_(options), results_(plan.cases.size()) {}
+      : plan_(plan),
+        archive_(archive),
+        options_(options),
+        time_limit_(options.time_limit > 0.0 ? options.time_limit : plan.time_limit),
+        results_(plan.cases.size()) {}
 
-  /// Takes one case after the other until none is left, the user interrupts or the archive fails.
-  void work() {
-    while (!stopped_ && !options_.context.is_interrupted()) {
-      const std::size_t index = next_++;
-      if (index >= plan_.cases.size()) return;
-      try {
-        run_case(index);
-      } catch (const Interrupted&) {
-        return;
-      } catch (...) {
-        const std::lock_guard lock(mutex_);
-        if (!failure_) failure_ = std::current_exception();
-        stopped_ = true;
+  StudyResult run() {
+    take_kept_cases();
+    if (linalg::petsc_is_running()) {
+      throw SystemError("PETSc was started before the workers of a study; its cases cannot run");
+    }
+    const auto jobs = static_cast<std::size_t>(std::max(options_.jobs, 1));
+    work(untimed_, jobs);
+    work(timed_, 1);
+    return result();
+  }
+
+ private:
+  /// A worker and what it does at the moment.
+  struct Desk {
+    std::unique_ptr<WorkerProcess> worker;
+    std::optional<std::size_t> index{};
+    Clock::time_point start{};
+  };
+
+  std::string key_of(const PlannedCase& planned) const {
+    return sha256_hex(options_.program + "\n" + planned.id + "\n" + planned.identity);
+  }
+
+  void take_kept_cases() {
+    for (std::size_t index = 0; index < plan_.cases.size(); ++index) {
+      const PlannedCase& planned = plan_.cases[index];
+      std::optional<CaseResult> kept;
+      if (!options_.force) kept = archive_.find(key_of(planned));
+      if (kept) {
+        finish(index, std::move(*kept), {.kept = true});
+      } else {
+        (planned.is_timed ? timed_ : untimed_).push_back(index);
       }
     }
   }
 
+  void start_worker(std::vector<Desk>& desks) {
+    desks.push_back(
+        {std::make_unique<WorkerProcess>([this](std::size_t index, const std::atomic<bool>& interrupted) {
+          RunContext context = options_.context;
+          context.interrupted = &interrupted;
+          return answer_of(plan_.cases[index], context);
+        })});
+  }
+
+  /// Gives out cases to workers that have none, starting workers as needed, at most `jobs`.
+  void give_out(std::deque<std::size_t>& queue, std::vector<Desk>& desks, std::size_t jobs) {
+    while (!queue.empty() && !options_.context.is_interrupted()) {
+      auto idle = std::find_if(desks.begin(), desks.end(), [](const Desk& desk) { return !desk.index; });
+      if (idle == desks.end()) {
+        if (desks.size() >= jobs) return;
+        try {
+          start_worker(desks);
+        } catch (const std::system_error& error) {
+          // Those there are do all the work.
+          if (desks.empty()) throw SystemError(error.what());
+          return;
+        }
+        idle = desks.end() - 1;
+      }
+      idle->index = queue.front();
+      idle->start = Clock::now();
+      idle->worker->assign({queue.front(), plan_.cases[queue.front()].is_timed});
+      queue.pop_front();
+    }
+  }
+
+  /// Takes one case after the other until none is left or the user interrupts.
+  void work(std::deque<std::size_t> queue, std::size_t jobs) {
+    std::vector<Desk> desks;
+    std::optional<Clock::time_point> interrupted_at;
+    while (true) {
+      std::erase_if(desks, [](const Desk& desk) { return desk.worker->has_ended(); });
+      give_out(queue, desks, jobs);
+      const bool is_busy =
+          std::any_of(desks.begin(), desks.end(), [](const Desk& desk) { return desk.index; });
+      if (!is_busy && (queue.empty() || options_.context.is_interrupted())) return;
+      wait_for(desks);
+      for (Desk& desk : desks) {
+        if (desk.index) {
+          look_after(desk, interrupted_at);
+        } else {
+          desk.worker->receive();  // notices its end
+        }
+      }
+      if (options_.context.is_interrupted() && !interrupted_at) {
+        interrupted_at = Clock::now();
+        for (const Desk& desk : desks) desk.worker->interrupt();
+      }
+    }
+  }
+
+  void wait_for(const std::vector<Desk>& desks) {
+    std::vector<pollfd> watched;
+    watched.reserve(desks.size());
+    for (const Desk& desk : desks) watched.push_back({desk.worker->descriptor(), POLLIN, 0});
+    ::poll(watched.data(), watched.size(), 100);
+    if (!options_.waiting) return;
+    RunProgress progress{.done = done_, .total = plan_.cases.size()};
+    for (const Desk& desk : desks) {
+      if (desk.index) progress.running.push_back(plan_.cases[*desk.index].id);
+    }
+    options_.waiting(progress);
+  }
+
+  void look_after(Desk& desk, const std::optional<Clock::time_point>& interrupted_at) {
+    const std::size_t index = *desk.index;
+    const double seconds = seconds_since(desk.start);
+    if (const std::optional<std::string> answer = desk.worker->receive()) {
+      desk.index.reset();
+      take(index, *answer, seconds);
+    } else if (desk.worker->has_ended()) {
+      desk.index.reset();
+      fail(index, "the process of this case " + desk.worker->how_it_ended(), seconds);
+    } else if (time_limit_ > 0.0 && seconds > time_limit_) {
+      desk.worker->kill();
+      while (!desk.worker->has_ended()) desk.worker->receive();
+      desk.index.reset();
+      fail(index, fmt::format("ran past its time limit of {} s", time_limit_), seconds);
+    } else if (interrupted_at && seconds_since(*interrupted_at) > options_.patience) {
+      desk.worker->kill();
+      while (!desk.worker->has_ended()) desk.worker->receive();
+      desk.index.reset();
+    }
+  }
+
+  void take(std::size_t index, const std::string& answer, double seconds) {
+    if (answer.empty() || answer.front() == is_interrupted) return;
+    if (answer.front() == is_failure) return fail(index, answer.substr(1), seconds);
+    CaseResult result = decode(std::string_view(answer).substr(1));
+    result.id = plan_.cases[index].id;
+    result.key = key_of(plan_.cases[index]);
+    archive_.keep(result);
+    finish(index, std::move(result), {.seconds = seconds});
+  }
+
+  /// A case that could not be computed has no key: it is tried again next time, when the reason may be gone.
+  void fail(std::size_t index, std::string reason, double seconds) {
+    CaseResult result;
+    result.id = plan_.cases[index].id;
+    result.verdict = Verdict::fails;
+    result.reason = std::move(reason);
+    finish(index, std::move(result), {.computed = false, .seconds = seconds});
+  }
+
+  struct Outcome {
+    bool kept = false, computed = true;
+    double seconds = 0.0;
+  };
+
+  void finish(std::size_t index, CaseResult result, Outcome outcome) {
+    ++done_;
+    results_[index] = std::move(result);
+    if (!options_.finished) return;
+    options_.finished(
+        {index, plan_.cases.size(), *results_[index], outcome.kept, outcome.computed, outcome.seconds});
+  }
+
   StudyResult result() {
-    if (failure_) std::rethrow_exception(failure_);
     StudyResult study{.kind = plan_.kind,
                       .title = plan_.title,
                       .spec = plan_.spec,
                       .seed = plan_.seed,
+                      .quick = plan_.quick,
                       .complete = true,
                       .cases = {}};
     for (std::optional<CaseResult>& result : results_) {
@@ -87,69 +262,19 @@ class Run {
     return study;
   }
 
- private:
-  void run_case(std::size_t index) {
-    const PlannedCase& planned = plan_.cases[index];
-    const std::string key = sha256_hex(options_.program + "\n" + planned.id + "\n" + planned.identity);
-    if (!options_.force) {
-      if (std::optional<CaseResult> kept = archive_.find(key)) {
-        finish(index, std::move(*kept), true, 0.0);
-        return;
-      }
-    }
-    if (options_.started) {
-      const std::lock_guard lock(mutex_);
-      options_.started(index, plan_.cases.size(), planned.id);
-    }
-    const auto start = std::chrono::steady_clock::now();
-    CaseResult result;
-    bool archivable = true;
-    try {
-      result = planned.run(options_.context);
-    } catch (const std::exception& error) {
-      result.verdict = Verdict::fails;
-      result.reason = error.what();
-      archivable = false;  // the reason may be gone at the next try
-    }
-    result.id = planned.id;
-    result.key = key;
-    if (archivable) archive_.keep(result);
-    finish(index, std::move(result), false,
-           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-
-  void finish(std::size_t index, CaseResult result, bool kept, double seconds) {
-    const std::lock_guard lock(mutex_);
-    results_[index] = std::move(result);
-    if (options_.finished) options_.finished({index, plan_.cases.size(), *results_[index], kept, seconds});
-  }
-
   const Plan& plan_;
   CaseArchive& archive_;
   const RunOptions& options_;
+  double time_limit_;
   std::vector<std::optional<CaseResult>> results_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> stopped_{false};
-  std::mutex mutex_;
-  std::exception_ptr failure_;
+  std::deque<std::size_t> untimed_, timed_;
+  std::size_t done_ = 0;
 };
 
 }  // namespace
 
 StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options) {
-  Run run(plan, archive, options);
-  std::vector<std::thread> threads;
-  const auto useful = static_cast<std::size_t>(std::max(options.jobs, 1));
-  for (std::size_t job = 1; job < std::min(useful, plan.cases.size()); ++job) {
-    try {
-      threads.emplace_back([&run] { run.work(); });
-    } catch (const std::system_error&) {
-      break;  // the machine has no more threads; those there are do all the work
-    }
-  }
-  run.work();
-  for (std::thread& thread : threads) thread.join();
-  return run.result();
+  return Run(plan, archive, options).run();
 }
 
 }  // namespace fw::study

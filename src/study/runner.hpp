@@ -12,23 +12,34 @@ struct CaseReport {
   std::size_t index = 0;  ///< of the case in the plan, from 0
   std::size_t total = 0;
   const CaseResult& result;
-  bool kept = false;  ///< found in the archive, not run again
+  bool kept = false;     ///< found in the archive, not run again
+  bool computed = true;  ///< false: it ended by an exception, a crash or its time limit, and `reason` says so
   double seconds = 0.0;
+};
+
+/// What the runner tells while cases run.
+struct RunProgress {
+  std::size_t done = 0, total = 0;
+  std::vector<std::string> running{};  ///< ids, the oldest first
 };
 
 struct RunOptions {
   RunContext context;
-  std::string program;  ///< identity of the executable: other code, other cases
-  bool force = false;   ///< run also what the archive holds
-  int jobs = 1;         ///< cases that run at the same time; timings are honest with 1 only
-  std::function<void(std::size_t index, std::size_t total, const std::string& id)> started;
-  std::function<void(const CaseReport&)> finished;
+  std::string program;      ///< identity of the executable: other code, other cases
+  bool force = false;       ///< run also what the archive holds
+  int jobs = 1;             ///< cases that run at the same time, those that are timed excepted
+  double time_limit = 0.0;  ///< [s] of one case, in place of the plan's; 0: the plan's
+  double patience = 5.0;    ///< [s] that a case has to react to the user's interrupt before it is ended
+  std::function<void(const RunProgress&)> waiting{};  ///< about ten times a second
+  std::function<void(const CaseReport&)> finished{};
 };
 
-/// Runs the cases of a plan, `jobs` at a time, and keeps each in the archive as soon as it is finished. A
-/// case that throws is a case that fails with the exception's text; the others go on. The result does not
-/// depend on `jobs`, timings aside. `started` and `finished` are called one at a time. After an interrupt the
-/// result is incomplete. Throws SystemError only if the archive cannot keep a case.
+/// Runs the cases of a plan in worker processes, `jobs` at a time, and keeps each in the archive as soon as
+/// it is finished; timed cases come last, one at a time and on one processor. A case that throws, crashes or
+/// runs past its time limit fails with the reason and is not kept; the others go on. The result does not
+/// depend on `jobs`, timings aside. `waiting` and `finished` are called by the calling thread. After an
+/// interrupt the result is incomplete. Throws SystemError if the archive cannot keep a case or no worker can
+/// be started.
 StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options);
 
 }  // namespace fw::study

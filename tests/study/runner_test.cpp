@@ -2,13 +2,41 @@
 
 #include <gtest/gtest.h>
 
+#include <sched.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "core/error.hpp"
 #include "memory_archive.hpp"
+#include "study/case_message.hpp"
 
 namespace fw::study {
 namespace {
+
+/// A counter that all processes of the test share.
+class SharedCounter {
+ public:
+  SharedCounter()
+      : memory_(::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
+                       -1, 0)),
+        value_(*new (memory_) std::atomic<int>(0)) {}
+  ~SharedCounter() { ::munmap(memory_, sizeof(std::atomic<int>)); }
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+  std::atomic<int>& operator*() const { return value_; }
+
+ private:
+  void* memory_;
+  std::atomic<int>& value_;
+};
 
 PlannedCase simple_case(const std::string& id, std::function<void()> action = {}) {
   return {.id = id, .identity = "identity of " + id, .run = [id, action](const RunContext&) {
@@ -33,32 +61,32 @@ Plan three_cases(std::function<void()> action = {}) {
 
 TEST(RunPlan, KeepsFinishedCasesAndDoesNotRunThemAgain) {
   MemoryArchive archive;
-  int runs = 0;
-  const Plan plan = three_cases([&] { ++runs; });
+  const SharedCounter runs;
+  const Plan plan = three_cases([&] { ++*runs; });
   run_plan(plan, archive, {});
   EXPECT_EQ(archive.size(), 3u);
   std::size_t kept = 0;
   RunOptions options;
   options.finished = [&](const CaseReport& report) { kept += report.kept; };
   const StudyResult again = run_plan(plan, archive, options);
-  EXPECT_EQ(runs, 1);
+  EXPECT_EQ(*runs, 1);
   EXPECT_EQ(kept, 3u);
   EXPECT_EQ(again.cases[1].id, "bb");
   options.force = true;
   run_plan(plan, archive, options);
-  EXPECT_EQ(runs, 2);
+  EXPECT_EQ(*runs, 2);
 }
 
 TEST(RunPlan, RunsACaseAgainForAnotherProgram) {
   MemoryArchive archive;
-  int runs = 0;
-  const Plan plan = three_cases([&] { ++runs; });
+  const SharedCounter runs;
+  const Plan plan = three_cases([&] { ++*runs; });
   RunOptions options;
   options.program = "one";
   run_plan(plan, archive, options);
   options.program = "two";
   run_plan(plan, archive, options);
-  EXPECT_EQ(runs, 2);
+  EXPECT_EQ(*runs, 2);
 }
 
 TEST(RunPlan, TurnsAnExceptionIntoAFailedCaseAndGoesOn) {
@@ -79,14 +107,145 @@ TEST(RunPlan, StopsAtAnInterruptAndSaysThatItIsIncomplete) {
   std::atomic<bool> interrupted{false};
   RunOptions options;
   options.context.interrupted = &interrupted;
-  const StudyResult result = run_plan(three_cases([&] {
-                                        interrupted = true;
-                                        throw Interrupted{};
+  options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
+  Plan plan = three_cases();
+  plan.cases[1].run = [](const RunContext& context) -> CaseResult {
+    while (!context.is_interrupted()) ::usleep(1000);
+    throw Interrupted{};
+  };
+  const StudyResult result = run_plan(plan, archive, options);
+  EXPECT_FALSE(result.complete);
+  EXPECT_EQ(result.cases.size(), 1u);
+  EXPECT_EQ(archive.size(), 1u);
+}
+
+TEST(RunPlan, EndsACaseThatDoesNotReactToAnInterrupt) {
+  MemoryArchive archive;
+  std::atomic<bool> interrupted{false};
+  RunOptions options;
+  options.patience = 0.1;
+  options.context.interrupted = &interrupted;
+  options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
+  const StudyResult result = run_plan(three_cases([] {
+                                        while (true) ::pause();
                                       }),
                                       archive, options);
   EXPECT_FALSE(result.complete);
   EXPECT_EQ(result.cases.size(), 1u);
-  EXPECT_EQ(archive.size(), 1u);
+}
+
+TEST(RunPlan, SurvivesACaseThatCrashes) {
+  MemoryArchive archive;
+  std::size_t not_computed = 0;
+  RunOptions options;
+  options.finished = [&](const CaseReport& report) { not_computed += !report.computed; };
+  const StudyResult result = run_plan(three_cases([] {
+                                        std::signal(SIGABRT, SIG_DFL);
+                                        std::abort();
+                                      }),
+                                      archive, options);
+  ASSERT_EQ(result.cases.size(), 3u);
+  EXPECT_EQ(not_computed, 1u);
+  EXPECT_EQ(result.cases[1].verdict, Verdict::fails);
+  EXPECT_EQ(result.cases[1].reason, "the process of this case ended by signal 6 (Aborted)");
+  EXPECT_EQ(result.cases[1].key, "");
+  EXPECT_EQ(result.cases[2].verdict, Verdict::holds);
+  EXPECT_EQ(archive.size(), 2u);
+}
+
+TEST(RunPlan, SurvivesACaseThatExits) {
+  MemoryArchive archive;
+  const StudyResult result = run_plan(three_cases([] { ::_exit(5); }), archive, {});
+  EXPECT_EQ(result.cases.at(1).reason, "the process of this case ended with exit code 5");
+  EXPECT_EQ(result.cases.at(2).verdict, Verdict::holds);
+}
+
+TEST(RunPlan, EndsACaseAtItsTimeLimitAndGoesOn) {
+  MemoryArchive archive;
+  Plan plan = three_cases([] { ::pause(); });
+  plan.time_limit = 0.2;
+  const StudyResult result = run_plan(plan, archive, {});
+  EXPECT_EQ(result.cases.at(1).verdict, Verdict::fails);
+  EXPECT_EQ(result.cases.at(1).reason, "ran past its time limit of 0.2 s");
+  EXPECT_EQ(result.cases.at(2).verdict, Verdict::holds);
+  RunOptions options;
+  options.time_limit = 0.1;  // goes before the plan's
+  EXPECT_EQ(run_plan(plan, archive, options).cases.at(1).reason, "ran past its time limit of 0.1 s");
+}
+
+TEST(RunPlan, RunsTimedCasesLastAloneAndOnOneProcessor) {
+  const SharedCounter running, most, timed_beside_others, processors;
+  Plan plan{.kind = "test", .title = "timed", .spec = "", .seed = 0, .cases = {}};
+  for (int i = 0; i < 8; ++i) {
+    const bool is_timed = i < 4;
+    PlannedCase planned = simple_case("case" + std::to_string(i), [&, is_timed] {
+      const int now = ++*running;
+      int before = *most;
+      while (now > before && !(*most).compare_exchange_weak(before, now)) {
+      }
+      ::usleep(30'000);
+      if (is_timed) {
+        *timed_beside_others += *running > 1;
+        cpu_set_t mask;
+        ::sched_getaffinity(0, sizeof mask, &mask);
+        *processors += CPU_COUNT(&mask);
+      }
+      --*running;
+    });
+    planned.is_timed = is_timed;
+    plan.cases.push_back(planned);
+  }
+  MemoryArchive archive;
+  RunOptions options;
+  options.jobs = 4;
+  const StudyResult result = run_plan(plan, archive, options);
+  EXPECT_EQ(*most, 4);
+  EXPECT_EQ(*timed_beside_others, 0);
+  EXPECT_EQ(*processors, 4);  // one for each
+  EXPECT_EQ(result.cases.front().id, "case0");
+}
+
+TEST(RunPlan, BringsEveryKindOfColumnOverFromTheWorkerUnchanged) {
+  CaseResult sent;
+  sent.columns = {{"x",
+                   "m",
+                   std::vector<double>{0.1, -0.0, std::numeric_limits<double>::quiet_NaN(), 1e308},
+                   {2, 2},
+                   {{"norm", "ü"}}},
+                  {"n", "1", std::vector<std::int64_t>{-1, 1LL << 62}, {}, {}},
+                  {"t", "", std::vector<std::string>{"", "a", std::string(100'000, 'x')}, {}, {}}};
+  sent.summary = {{"a", "s", 0.25}, {"b", "1", std::int64_t{7}}, {"c", "", std::string("text")}};
+  sent.verdict = Verdict::not_applicable;
+  sent.reason = "why";
+  Plan plan{.kind = "test", .title = "columns", .spec = "", .seed = 0, .cases = {}};
+  plan.cases.push_back({.id = "one", .identity = "", .run = [&](const RunContext&) { return sent; }});
+  MemoryArchive archive;
+  const CaseResult got = run_plan(plan, archive, {}).cases.at(0);
+  const auto bytes = [](CaseResult result) {
+    result.id.clear();
+    result.key.clear();
+    return encode(result);
+  };
+  EXPECT_EQ(bytes(got), bytes(sent));
+  ASSERT_EQ(got.columns.size(), 3u);
+  EXPECT_EQ(std::get<2>(got.columns[2].values)[2].size(), 100'000u);
+  EXPECT_EQ(std::get<1>(got.columns[1].values)[1], 1LL << 62);
+  EXPECT_EQ(got.columns[0].attributes[0].second, "ü");
+  EXPECT_TRUE(std::signbit(std::get<0>(got.columns[0].values)[1]));
+}
+
+TEST(CaseMessage, RefusesBytesThatAreNone) {
+  const std::string whole = encode({.id = "a",
+                                    .key = "b",
+                                    .columns = {},
+                                    .summary = {{"c", "s", 1.0}},
+                                    .verdict = Verdict::holds,
+                                    .reason = "d"});
+  EXPECT_EQ(decode(whole).reason, "d");
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_THROW(decode(std::string_view(whole).substr(0, size)), std::runtime_error) << size;
+  }
+  EXPECT_THROW(decode(whole + "x"), std::runtime_error);
 }
 
 TEST(RunPlan, GivesTheSameResultForAnyNumberOfJobs) {

@@ -41,8 +41,7 @@ MethodInfo info_of(const std::string& name, const std::string& title, int order)
 
 std::unique_ptr<Integrator> make(MethodInfo info, TsMethod method, ToleranceScaling scaling = {}) {
   method.order = std::max(info.order, 1);
-  // Without options nothing is to be checked, and lists of methods do not start PETSc.
-  if (!method.petsc_options.empty()) const linalg::PetscOptionText checked(method.petsc_options);
+  linalg::check_petsc_options(method.petsc_options);
   return std::make_unique<OracleIntegrator>(
       std::move(info),
       [method](const Ivp& ivp, const StepControl& control, Work& work) {

@@ -1,0 +1,113 @@
+#include "app/study_run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "analysis/reference_cache.hpp"
+#include "app/progress_bar.hpp"
+#include "store/study_store.hpp"
+#include "store/text_table.hpp"
+#include "study/runner.hpp"
+
+namespace fw::app {
+
+namespace {
+
+using study::Verdict;
+
+std::string running_text(const std::vector<std::string>& running) {
+  if (running.empty()) return "";
+  return running.size() == 1 ? running.front()
+                             : fmt::format("{} and {} more", running.front(), running.size() - 1);
+}
+
+void count(const study::CaseReport& report, Tally& tally) {
+  const study::CaseResult& result = report.result;
+  tally.holds += result.verdict == Verdict::holds;
+  tally.fails += result.verdict == Verdict::fails;
+  tally.not_applicable += result.verdict == Verdict::not_applicable;
+  tally.kept += report.kept;
+  tally.not_computed += !report.computed;
+  if (result.verdict == Verdict::fails)
+    tally.failures.push_back(fmt::format("{}: {}", result.id, result.reason));
+}
+
+}  // namespace
+
+Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
+                const std::atomic<bool>& interrupted) {
+  store::StudyStore store(planned.output,
+                          run.force ? store::StudyStore::Earlier::forget : store::StudyStore::Earlier::reuse);
+  fmt::print("{} ({} cases)\n", planned.plan.title, planned.plan.cases.size());
+  std::fflush(stdout);
+  ProgressBar bar("cases");
+  Tally tally;
+  std::size_t done = 0;
+  study::RunOptions options;
+  options.context = {.interrupted = &interrupted,
+                     .reference_cache = analysis::ReferenceCache::default_directory()};
+  options.program = run.program;
+  options.force = run.force;
+  options.jobs = run.jobs;
+  options.time_limit = run.time_limit;
+  options.waiting = [&](const study::RunProgress& progress) {
+    // Kept cases took no time and tell nothing about what is left.
+    const auto fresh = static_cast<double>(progress.done - tally.kept);
+    const auto all = static_cast<double>(progress.total - tally.kept);
+    bar.update(fresh / all, fresh, running_text(progress.running));
+  };
+  options.finished = [&](const study::CaseReport& report) {
+    bar.clear();
+    count(report, tally);
+    fmt::print("  [{}/{}] {:<14} {}  {}{}\n", ++done, report.total, to_string(report.result.verdict),
+               report.result.id, report.result.reason,
+               report.kept ? "  (kept)" : fmt::format("  ({:.1f} s)", report.seconds));
+    std::fflush(stdout);
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const study::StudyResult result = study::run_plan(planned.plan, store, options);
+  tally.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  bar.clear();
+  store.write(run.command_line, result);
+  tally.complete = result.complete;
+  fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds,
+             tally.fails, tally.not_applicable,
+             tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
+  std::fflush(stdout);
+  return tally;
+}
+
+void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<Tally>& tallies) {
+  using Align = store::TextTable::Align;
+  std::vector<std::string> names, cases, holds, fails, not_applicable, kept, seconds, verdicts;
+  for (std::size_t k = 0; k < tallies.size(); ++k) {
+    const Tally& tally = tallies[k];
+    names.push_back(studies[k].output.string());
+    cases.push_back(fmt::format("{}", studies[k].plan.cases.size()));
+    holds.push_back(fmt::format("{}", tally.holds));
+    fails.push_back(fmt::format("{}", tally.fails));
+    not_applicable.push_back(fmt::format("{}", tally.not_applicable));
+    kept.push_back(fmt::format("{}", tally.kept));
+    seconds.push_back(fmt::format("{:.1f}", tally.seconds));
+    verdicts.push_back(tally.fails > 0 ? "fails" : tally.complete ? "holds" : "incomplete");
+  }
+  store::TextTable table;
+  table.add_column("study", Align::left, names);
+  table.add_column("cases", Align::right, cases);
+  table.add_column("hold", Align::right, holds);
+  table.add_column("fail", Align::right, fails);
+  table.add_column("not applicable", Align::right, not_applicable);
+  table.add_column("kept", Align::right, kept);
+  table.add_column("time [s]", Align::right, seconds);
+  table.add_column("verdict", Align::left, verdicts);
+  fmt::print("{}", table.text());
+  for (std::size_t k = 0; k < tallies.size(); ++k) {
+    if (tallies[k].failures.empty()) continue;
+    fmt::print("\n{} fails in\n", names[k]);
+    for (const std::string& failure : tallies[k].failures) fmt::print("  {}\n", failure);
+  }
+}
+
+}  // namespace fw::app

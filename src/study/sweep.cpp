@@ -1,0 +1,208 @@
+#include "study/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "core/error.hpp"
+#include "core/toml_assignment.hpp"
+#include "study/parameter_values.hpp"
+
+namespace fw::study {
+
+namespace {
+
+using Value = decltype(TomlAssignment::value);
+
+/// One key of the inner study that takes several values.
+struct Parameter {
+  std::string path;  ///< in [study]
+  std::string name;
+  std::string unit;
+  std::vector<Value> values;
+};
+
+/// The value as it stands in names of cases.
+std::string text_of(const Value& value) {
+  const auto written = [](const auto& held) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, bool>) {
+      return std::string(held ? "true" : "false");
+    } else {
+      return fmt::format("{}", held);
+    }
+  };
+  return std::visit(written, value);
+}
+
+/// A column has one type: numbers are floating-point numbers, whether or not a value is whole.
+SummaryCell cell_of(const Parameter& parameter, const Value& value) {
+  SummaryCell cell{"parameter_" + parameter.name, parameter.unit, text_of(value)};
+  if (const auto* number = std::get_if<double>(&value)) cell.value = *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) cell.value = static_cast<double>(*whole);
+  return cell;
+}
+
+/// Whole numbers as integers: keys that take numbers take those as well, and counts take nothing else.
+Value number_value(double number) {
+  constexpr double largest = 9007199254740992.0;  // 2^53
+  if (number == std::floor(number) && std::abs(number) <= largest) return static_cast<std::int64_t>(number);
+  return number;
+}
+
+bool holds_strings(const CheckedTable& section) {
+  try {
+    section.strings("values");
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+Parameter read_parameter(const CheckedTable& section) {
+  Parameter parameter;
+  parameter.path = section.string("path");
+  const std::string last = parameter.path.substr(parameter.path.find_last_of('.') + 1);
+  parameter.name = section.string_or("name", last);
+  parameter.unit = section.string_or("unit", "1");
+  if (section.has("values") && holds_strings(section)) {
+    for (const std::string& text : section.strings("values")) parameter.values.emplace_back(text);
+    parameter.unit = "";
+  } else {
+    for (const double number : read_parameter_values(section))
+      parameter.values.push_back(number_value(number));
+  }
+  if (parameter.values.empty()) section.fail("values", "found an empty list, expected at least one value");
+  return parameter;
+}
+
+/// At most `count` of the values, the first and the last among them.
+void thin_out(std::vector<Value>& values, std::size_t count) {
+  if (values.size() <= count) return;
+  std::vector<Value> kept;
+  for (std::size_t k = 0; k < count; ++k) {
+    kept.push_back(values[count == 1 ? 0 : k * (values.size() - 1) / (count - 1)]);
+  }
+  values = std::move(kept);
+}
+
+std::vector<Parameter> read_parameters(const CheckedTable& spec, bool quick) {
+  std::vector<Parameter> parameters;
+  std::set<std::string> names;
+  const auto points =
+      static_cast<std::size_t>(spec.table_or_empty("quick").integer_or("values", 2, 1, 10'000));
+  for (const CheckedTable& section : spec.tables("parameter")) {
+    Parameter& parameter = parameters.emplace_back(read_parameter(section));
+    if (!names.insert(parameter.name).second) {
+      section.fail("path", fmt::format("another parameter is called \"{}\" as well; give one a \"name\"",
+                                       parameter.name));
+    }
+    if (quick) thin_out(parameter.values, points);
+  }
+  if (parameters.empty()) {
+    throw InputError(fmt::format("{}: found no [[parameter]], expected at least one", spec.source_name()));
+  }
+  return parameters;
+}
+
+/// Marks everything in a section as read: another reader checks it.
+void accept_everything(const CheckedTable& section) {
+  for (const std::string& key : section.keys()) {
+    if (!section.has(key)) continue;
+    if (section.is_table(key)) {
+      accept_everything(section.table(key));
+      continue;
+    }
+    try {
+      for (const CheckedTable& inner : section.tables(key)) accept_everything(inner);
+    } catch (const InputError&) {
+      // a plain value
+    }
+  }
+}
+
+/// One point of the grid: an index into the values of each parameter.
+std::vector<std::vector<std::size_t>> grid_points(const std::vector<Parameter>& parameters) {
+  std::vector<std::vector<std::size_t>> points{{}};
+  for (const Parameter& parameter : parameters) {
+    std::vector<std::vector<std::size_t>> longer;
+    for (const std::vector<std::size_t>& point : points) {
+      for (std::size_t k = 0; k < parameter.values.size(); ++k) {
+        longer.push_back(point);
+        longer.back().push_back(k);
+      }
+    }
+    points = std::move(longer);
+  }
+  return points;
+}
+
+/// Puts the texts of the scenes that the first point has read into the resolved specification, which then
+/// needs no other file.
+void record_scenes(const CheckedTable& study, const Plan& inner) {
+  const CheckedTable resolved = CheckedTable::parse_text(inner.spec, study.source_name());
+  const std::vector<CheckedTable> sections = study.tables("problem"), with_text = resolved.tables("problem");
+  for (std::size_t k = 0; k < std::min(sections.size(), with_text.size()); ++k) {
+    if (with_text[k].has("scene_text"))
+      sections[k].string_or("scene_text", with_text[k].string("scene_text"));
+  }
+}
+
+/// The case of the inner study with the parameters before its own columns.
+PlannedCase with_parameters(PlannedCase inner, const std::string& point, std::vector<SummaryCell> cells) {
+  inner.id = group_name(point + "-" + inner.id);
+  inner.identity = "sweep\n" + point + "\n" + inner.identity;
+  inner.run = [run = std::move(inner.run), cells = std::move(cells)](const RunContext& context) {
+    CaseResult result = run(context);
+    result.summary.insert(result.summary.begin(), cells.begin(), cells.end());
+    return result;
+  };
+  return inner;
+}
+
+void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
+                bool quick, Plan& plan) {
+  const std::vector<Parameter> parameters = read_parameters(spec, quick);
+  spec.strings_or("quantities", {});  // what the plot shows
+  const CheckedTable study = spec.table("study");
+  study.string_or("title", plan.title);
+  accept_everything(study);
+  const std::string text = study.to_toml_text();
+  bool is_first = true;
+  for (const std::vector<std::size_t>& point : grid_points(parameters)) {
+    std::vector<TomlAssignment> assignments;
+    std::vector<SummaryCell> cells;
+    std::string name;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const Value& value = parameters[k].values[point[k]];
+      assignments.push_back({parameters[k].path, value});
+      cells.push_back(cell_of(parameters[k], value));
+      name += fmt::format("{}{}={}", k > 0 ? "," : "", parameters[k].name, text_of(value));
+    }
+    const std::string where = fmt::format("{} ([study] with {})", spec.source_name(), group_name(name));
+    // The directory stays that of the file, so that scenes are found.
+    const CheckedTable inner_spec = CheckedTable::parse_text(toml_with(text, where, assignments), where);
+    Plan inner = read_plan(inner_spec, kinds, catalog, quick);
+    if (is_first) {
+      record_scenes(study, inner);
+      plan.warnings = inner.warnings;
+      if (plan.time_limit == 0.0) plan.time_limit = inner.time_limit;
+    }
+    is_first = false;
+    for (PlannedCase& planned : inner.cases)
+      plan.cases.push_back(with_parameters(std::move(planned), name, cells));
+  }
+}
+
+}  // namespace
+
+StudyKind sweep_kind(std::vector<StudyKind> kinds) {
+  return {.name = "sweep",
+          .title = "A study over a grid of parameters",
+          .description = "any other kind of study at every combination of values for some of its keys",
+          .read = [kinds = std::move(kinds)](const CheckedTable& spec, const Catalog& catalog, bool quick,
+                                             Plan& plan) { read_sweep(spec, kinds, catalog, quick, plan); }};
+}
+
+}  // namespace fw::study
