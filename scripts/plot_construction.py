@@ -52,7 +52,7 @@ def draw(result):
     cases, field = read(result), read_field(result)
     columns = min(3, len(cases))
     rows = -(-len(cases) // columns)
-    figure, axes = new_figure(result, 5.6 * columns, 4.4 * rows + 1.3, rows, columns, sharex=True, sharey=True)
+    figure, axes = new_figure(result, 5.2 * columns + 2.4, 3.9 * rows + 1.3, rows, columns, sharex=True, sharey=True)
     for panel in axes.flat[len(cases):]:
         panel.remove()
     for index, (panel, case) in enumerate(zip(axes.flat, cases)):
@@ -73,11 +73,13 @@ def draw(result):
             panel.set_xlabel(label("time t", case["time_unit"]))
             panel.tick_params(labelbottom=True)
     line = plot_style.plt.Line2D
-    figure.legend(handles=[line([], [], color=PALETTE[1], marker=">", label="step"),
-                           line([], [], color=PALETTE[2], marker="o", linewidth=2.2,
-                                label="where its slope is that of the field, and the solution through there"),
-                           line([], [], color=EXACT, linewidth=1.2, label="exact solution from the start")],
-                  loc="outside lower center", ncols=3)
+    axes[0][columns - 1].legend(
+        handles=[line([], [], color=PALETTE[1], marker=">", label="step"),
+                 line([], [], color=PALETTE[2], marker="o", linewidth=2.2,
+                      label="its slope is that of\nthe field here, and the\nsolution through there"),
+                 line([], [], color=PALETTE[1], linewidth=1.0, linestyle=(0, (4, 2)), label="tangent"),
+                 line([], [], color=EXACT, linewidth=1.2, label="exact solution\nfrom the start")],
+        loc="upper left", bbox_to_anchor=(1.02, 1.0), borderaxespad=0)
     return [figure]
 
 

@@ -49,7 +49,8 @@ def draw(result):
             panel.tick_params(labelbottom=True)
     handles, names = axes[0][columns - 1].get_legend_handles_labels()
     unique = dict(zip(names, handles))
-    figure.legend(unique.values(), unique.keys(), loc="outside upper right", ncols=len(unique))
+    axes[0][columns - 1].legend(unique.values(), unique.keys(), loc="upper left", bbox_to_anchor=(1.02, 1.0),
+                                borderaxespad=0)
     return [figure]
 
 

@@ -157,7 +157,7 @@ AmplificationFactors exact_amplification_factors() {
 }
 
 double NumericalOscillation::damping_ratio() const {
-  return oscillates ? -std::log(std::abs(factor)) / phase : none;
+  return oscillates ? 0.0 - std::log(std::abs(factor)) / phase : none;
 }
 
 double NumericalOscillation::period_error(double z) const {
@@ -172,17 +172,18 @@ std::vector<NumericalOscillation> numerical_oscillations(const AmplificationFact
   return results;
 }
 
+double spectral_radius(const AmplificationFactors& factors, double z) {
+  double largest = 0.0;
+  for (const Complex factor : factors(z)) largest = std::max(largest, std::abs(factor));
+  return largest;
+}
+
 double spectral_radius_at_infinity(const AmplificationFactors& factors) {
-  const auto radius = [&](double z) {
-    double largest = 0.0;
-    for (const Complex factor : factors(z)) largest = std::max(largest, std::abs(factor));
-    return largest;
-  };
-  const double far = radius(1e5), farther = radius(1e6);
+  const double far = spectral_radius(factors, 1e5), farther = spectral_radius(factors, 1e6);
   // What grows, grows at least like z (a splitting of order 1 like z²).
   if (!(farther < 3.0 * far + 1.0)) return std::numeric_limits<double>::infinity();
-  // ρ(z) = ρ(∞) + O(1/z): small factors are those that vanish.
-  return farther < 1e-4 && farther < 0.5 * far ? 0.0 : farther;
+  // What vanishes, falls like z^{−1/k} of a k-step formula at least; k ≤ 6.
+  return farther < 0.75 * far ? 0.0 : farther;
 }
 
 }  // namespace fw::analysis

@@ -48,6 +48,9 @@ struct NumericalOscillation {
 std::vector<NumericalOscillation> numerical_oscillations(const AmplificationFactors& factors,
                                                          const std::vector<double>& z);
 
+/// The largest factor in modulus at z.
+double spectral_radius(const AmplificationFactors& factors, double z);
+
 /// lim z→∞ of the spectral radius; infinite where it grows without bound (explicit schemes).
 double spectral_radius_at_infinity(const AmplificationFactors& factors);
 

@@ -56,12 +56,13 @@ class BinTable {
 class EnergyCase {
  public:
   EnergyCase(const WatchedEntry& problem, const std::string& call, const Integrator& integrator,
-             const analysis::AmplificationFactors& theory, const Settings& settings,
+             const analysis::AmplificationFactors& theory, bool has_coefficients, const Settings& settings,
              const RunContext& context)
       : problem_(problem),
         call_(call),
         integrator_(integrator),
         theory_(theory),
+        has_coefficients_(has_coefficients),
         settings_(settings),
         context_(context) {}
 
@@ -75,7 +76,9 @@ class EnergyCase {
                                     static_cast<std::uint64_t>(settings_.bins), context_));
     }
     exponents_ = measure_exponents(runs_);
-    const EnergyVerdict judged = judge_energy(problem_.watched, integrator_.info(), runs_, exponents_);
+    const EnergyVerdict judged =
+        judge_energy(problem_.watched, integrator_.info(),
+                     has_coefficients_ && integrator_.info().is_symplectic, runs_, exponents_);
     CaseResult result;
     result.verdict = judged.verdict;
     result.reason = judged.reason;
@@ -215,6 +218,7 @@ class EnergyCase {
   const std::string& call_;
   const Integrator& integrator_;
   const analysis::AmplificationFactors& theory_;
+  bool has_coefficients_;
   const Settings& settings_;
   const RunContext& context_;
   std::vector<EnergyRun> runs_;
@@ -273,8 +277,10 @@ void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, P
           {.id = group_name(problem->entry.label + "-" + call),
            .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" + settings.text(),
            .run = [problem, call, integrator, theory = catalog.oscillator_theory(call),
+                   has_coefficients = !std::holds_alternative<std::monostate>(catalog.scheme_data(call)),
                    settings](const RunContext& context) {
-             return EnergyCase(*problem, call, *integrator, theory, settings, context).run();
+             return EnergyCase(*problem, call, *integrator, theory, has_coefficients, settings, context)
+                 .run();
            }});
     }
   }

@@ -15,7 +15,7 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) {
   if (springs != nullptr) {
     const Index n = springs->degrees_of_freedom();
     quantity = "energy";
-    unit = "J";
+    unit = std::string(1, 'J');  // GCC 12 warns wrongly of the assignment of one letter
     value = [s = springs, n](double, ConstVectorRef y) { return s->energies(y.head(n), y.tail(n)).total(); };
     const mechanics::MassSpringModel& model = springs->model();
     is_damped = springs->force_class() == ForceClass::velocity;

@@ -86,7 +86,8 @@ void require_bounded(const std::vector<EnergyRun>& runs, Findings& findings, con
                   value(*worst), worst->seen->steps_taken(), worst->step, bound(*worst)));
 }
 
-void judge_momenta(const MethodInfo& info, const std::vector<EnergyRun>& runs, Findings& findings) {
+void judge_momenta(const MethodInfo& info, bool keeps_angular_momentum, const std::vector<EnergyRun>& runs,
+                   Findings& findings) {
   require_bounded(
       runs, findings, "linear momentum",
       [](const EnergyRun& run) { return run.seen->momentum_change()->largest_magnitude(); },
@@ -95,9 +96,7 @@ void judge_momenta(const MethodInfo& info, const std::vector<EnergyRun>& runs, F
                                   info.iteration_tolerance);
       });
   const auto angular = [](const EnergyRun& run) { return run.seen->angular_change()->largest_magnitude(); };
-  // A quadratic invariant: kept by symplectic schemes of these families, and by no explicit Runge-Kutta
-  // method.
-  if (info.is_symplectic) {
+  if (keeps_angular_momentum) {
     require_bounded(runs, findings, "angular momentum", angular, [&](const EnergyRun& run) {
       return conservation_bound(run.seen->angular_scale(), run.seen->steps_taken(), info.iteration_tolerance);
     });
@@ -254,7 +253,7 @@ EnergyExponents measure_exponents(const std::vector<EnergyRun>& runs) {
           exponent_in_step(balance_steps, balances)};
 }
 
-EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info,
+EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info, bool keeps_angular_momentum,
                            const std::vector<EnergyRun>& runs, const EnergyExponents& exponents) {
   Findings findings;
   const EnergyRun& first = runs.front();
@@ -268,7 +267,7 @@ EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info
   } else {
     judge_conservative(info, runs, exponents, findings);
   }
-  if (watched.is_free) judge_momenta(info, runs, findings);
+  if (watched.is_free) judge_momenta(info, keeps_angular_momentum, runs, findings);
   if (!has_ended_well(runs)) {
     for (const EnergyRun& run : runs) {
       if (run.status.ok()) continue;

@@ -58,9 +58,8 @@ EnergyExponents measure_exponents(const std::vector<EnergyRun>& runs);
 ///  5. any other scheme of order p drifts with h^p or a higher power;
 ///  6. energy lost and work of the dampers agree up to h^p or a higher power;
 ///  7. momenta of free systems: linear to rounding or iteration tolerance, angular likewise of symplectic
-///  schemes
-///     that conserve it.
-EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info,
+///     schemes that are given by coefficients (`keeps_angular_momentum`), since it is a quadratic invariant.
+EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info, bool keeps_angular_momentum,
                            const std::vector<EnergyRun>& runs, const EnergyExponents& exponents);
 
 }  // namespace fw::study

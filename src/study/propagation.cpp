@@ -23,6 +23,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 struct Settings {
   std::vector<double> steps;     ///< h [s]
   std::int64_t step_count = 60;  ///< of every run
+  double duration = 0.0;         ///< in place of it [s]; 0: none
   std::int64_t mass = -1;        ///< the one that is disturbed; −1: the middle one
   bool kick = true;              ///< a velocity, else a displacement
   double size = 1.0;             ///< of it [m/s] or [m]
@@ -30,11 +31,16 @@ struct Settings {
   double threshold = 1e-3;        ///< of the largest displacement so far, for the front that can be seen
   double speed_tolerance = 0.02;  ///< of the speed of the wave, relative
 
+  std::int64_t steps_of(double step) const {
+    return duration > 0.0 ? std::max<std::int64_t>(2, std::llround(duration / step)) : step_count;
+  }
+
   std::string text() const {
     return fmt::format(
-        "steps = {}\nstep_count = {}\nmass = {}\nkick = {}\nsize = {}\ndirection = {} {} {}\nthreshold = {}\n"
+        "steps = {}\nstep_count = {}\nduration = {}\nmass = {}\nkick = {}\nsize = {}\ndirection = {} {} "
+        "{}\nthreshold = {}\n"
         "speed_tolerance = {}\n",
-        fmt::join(steps, ", "), step_count, mass, kick, size, direction.x, direction.y, direction.z,
+        fmt::join(steps, ", "), step_count, duration, mass, kick, size, direction.x, direction.y, direction.z,
         threshold, speed_tolerance);
   }
 };
@@ -114,13 +120,13 @@ class PropagationCase {
     const analysis::InfluenceFront start =
         network.is_kicked ? analysis::InfluenceFront{-1, 0} : analysis::InfluenceFront{0, -1};
     predicted_ = analysis::predict_fronts(data, start, network.farthest,
-                                          static_cast<std::uint64_t>(settings.step_count));
+                                          static_cast<std::uint64_t>(settings.steps_of(step)));
     if (!integrator.info().is_explicit) predicted_ = {.known = true, .whole_system = true, .fronts = {}};
   }
 
   CaseResult run() {
     Ivp ivp = network_.ivp;
-    ivp.t1 = ivp.t0 + step_ * static_cast<double>(settings_.step_count);
+    ivp.t1 = ivp.t0 + step_ * static_cast<double>(settings_.steps_of(step_));
     solution_ = integrator_.solve(ivp, FixedStep{.step = step_}, seen_);
     if (context_.is_interrupted()) throw Interrupted{};
     fit_speed();
@@ -154,7 +160,8 @@ class PropagationCase {
     std::vector<double> times, fronts;
     for (std::size_t k = 0; k < seen_.waves.size(); ++k) {
       const double way = seen_.waves[k] / network_.farthest;
-      if (!(way >= 0.3 && way <= 0.9)) continue;
+      if (way > 0.9) break;  // soon it is reflected
+      if (!(way >= 0.3)) continue;
       times.push_back(seen_.times[k]);
       fronts.push_back(seen_.waves[k]);
     }
@@ -223,7 +230,8 @@ class PropagationCase {
     if (solution_.work.linear_iterations > 0 && !whole) {
       texts.push_back(fmt::format(
           "{}: the iterative solver stops at its tolerance, after {:.1f} iterations per step", found,
-          static_cast<double>(solution_.work.linear_iterations) / static_cast<double>(settings_.step_count)));
+          static_cast<double>(solution_.work.linear_iterations) /
+              static_cast<double>(settings_.steps_of(step_))));
     } else {
       require(whole, found);
     }
@@ -288,6 +296,7 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
   settings.steps = table.numbers("steps", NumberRule::positive);
   if (settings.steps.empty()) table.fail("steps", "found an empty list, expected at least one step");
   settings.step_count = table.integer_or("step_count", settings.step_count, 2, 100'000);
+  settings.duration = table.number_or("duration", settings.duration, NumberRule::nonnegative);
   settings.mass = table.integer_or("mass", settings.mass, -1);
   settings.kick = table.choice_or("disturbance", "velocity", {"velocity", "position"}) == "velocity";
   settings.size = table.number_or("size", settings.size, NumberRule::positive);
@@ -299,6 +308,12 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
   const std::int64_t quick_count =
       spec.table_or_empty("quick").integer_or("step_count", settings.step_count, 2, 100'000);
   if (quick) settings.step_count = quick_count;
+  for (std::size_t k = 0; k < settings.steps.size(); ++k) {
+    if (settings.duration / settings.steps[k] > 1e5) {
+      table.fail("duration", fmt::format("found {}, expected at most 100 000 steps of {}", settings.duration,
+                                         settings.steps[k]));
+    }
+  }
   return settings;
 }
 
