@@ -11,7 +11,7 @@ from plot_style import EXACT, PALETTE, QUIET, label, new_figure, number
 
 MOST_MARKERS = 12
 FLOOR = 1e-12  # what is smaller is rounding
-STYLES = ["-", (0, (6, 1.6)), (0, (1.2, 1.2))]  # one per round through the colours
+STYLES = ["-", (0, (6, 1.6)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5))]  # one per round through the colours
 
 
 def look(index):
@@ -51,8 +51,14 @@ def signed_curve(panel, z, values, measured, style, width=1.7):
     panel.loglog(z[::every], shown[::every], linestyle="none", marker="o", markersize=4, color=style["color"])
 
 
+def is_undamped(curve):
+    known = curve["damping_ratio"][numpy.isfinite(curve["damping_ratio"])]
+    return known.size > 0 and not (numpy.abs(known) > FLOOR).any()
+
+
 def method_legend(panel, curves, extra=()):
-    handles = [Line2D([], [], linewidth=2, label=curve["row"]["method"], **curve["look"]) for curve in curves]
+    handles = [Line2D([], [], linewidth=2, label=curve["row"]["method"] + (" (no damping)" if is_undamped(curve) else ""),
+                      **curve["look"]) for curve in curves]
     handles += [Line2D([], [], linestyle="none", marker="o", markersize=4, color=QUIET, label="measured on a run"), *extra]
     panel.set_axis_off()
     panel.legend(handles=handles, loc="upper left", borderaxespad=0)
@@ -74,12 +80,6 @@ def draw_errors(result, curves):
     method_legend(axes[0][2], curves, [
         Line2D([], [], color=QUIET, linewidth=1.7, label="damps; period too long"),
         Line2D([], [], color=QUIET, linewidth=0.8, label="amplifies; period too short")])
-    undamped = [curve["row"]["method"] for curve in curves
-                if not (numpy.abs(curve["damping_ratio"][numpy.isfinite(curve["damping_ratio"])]) > FLOOR).any()
-                and numpy.isfinite(curve["damping_ratio"]).any()]
-    if undamped:
-        axes[0][0].text(0.03, 0.97, "no damping at all:\n" + "\n".join(undamped), transform=axes[0][0].transAxes,
-                        va="top", fontsize=9.5, color=QUIET)
     return figure
 
 

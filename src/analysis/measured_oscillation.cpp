@@ -54,14 +54,14 @@ class StateHistory final : public Observer {
   std::vector<double> positions, velocities;
 
  private:
-  static constexpr double smallest = 1e-120, largest = 1e90;  // squares have to stay doubles
+  static constexpr double smallest = 1e-60, largest = 1e60;  // norms of solvers square and multiply
   double scale_;
   const std::function<bool()>& is_interrupted_;
 };
 
 /// The first step of the window.
 std::size_t window_start(const StateHistory& history, int transient_steps) {
-  constexpr double smallest = 1e-60, largest = 1e45;
+  constexpr double smallest = 1e-30, largest = 1e30;
   const auto last = static_cast<std::size_t>(transient_steps);
   for (std::size_t n = 0; n < history.size(); ++n) {
     if (n == last || history.norm(n) < smallest || history.norm(n) > largest) return n;

@@ -11,7 +11,7 @@ namespace fw::analysis {
 struct OscillationRun {
   double periods = 10.0;  ///< of the exact oscillation in the window of the fit, which has at least 32 steps
   /// Steps before the window, in which parasitic factors die out; fewer where the amplitude leaves
-  /// [1e-60, 1e45] before.
+  /// [1e-30, 1e30] before.
   int transient_steps = 400;
   std::function<bool()> is_interrupted{};  ///< asked after every step; empty: never
 };

@@ -59,7 +59,7 @@ bool is_measurable(const analysis::NumericalOscillation& theory, std::int64_t tr
   if (theory.parasitic_ratio == 0.0) return true;
   const double rate = std::abs(std::log(std::abs(theory.factor)));
   const double steps =
-      std::min(static_cast<double>(transient_steps), std::log(1e60) / std::max(rate, 1e-300));
+      std::min(static_cast<double>(transient_steps), std::log(1e30) / std::max(rate, 1e-300));
   return steps * std::log(theory.parasitic_ratio) < std::log(1e-12);
 }
 

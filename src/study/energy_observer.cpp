@@ -66,7 +66,10 @@ bool EnergyObserver::observe(const StepView& view) {
   const double change = energy - start_;
   scale_ = std::max(scale_, std::abs(energy));
   change_.add(view.time, change);
-  if (logarithm_ && energy > 0.0) logarithm_->add(static_cast<double>(view.index), std::log(energy / start_));
+  // What has decayed so far says nothing more: squares of it leave the range of doubles.
+  constexpr double decayed = 1e-100;
+  if (logarithm_ && energy > decayed * start_)
+    logarithm_->add(static_cast<double>(view.index), std::log(energy / start_));
   if (modified_) modified_change_->add(view.time, modified_(view.time, view.state) - modified_start_);
   if (watched_.springs != nullptr) {
     const Index n = watched_.springs->degrees_of_freedom();

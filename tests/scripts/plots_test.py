@@ -187,7 +187,7 @@ class LaterKinds(PlotTest):
         line, markers = errors.axes[0].lines[0], errors.axes[0].lines[2]
         numpy.testing.assert_allclose(line.get_ydata(), 0.5 * z)
         numpy.testing.assert_allclose(markers.get_ydata(), 0.5 * z[::2])
-        self.assertIn("no damping at all:\ntrapezoidal", [text.get_text() for text in errors.axes[0].texts])
+        self.assertEqual(texts_of_legend(errors.axes[2])[:2], ["implicit_euler", "trapezoidal (no damping)"])
         self.assertIn("20 steps per period", motion._suptitle.get_text())
         self.assertEqual(radius.axes[0].get_ylabel(), "spectral radius ρ")
 

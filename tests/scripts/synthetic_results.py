@@ -268,9 +268,9 @@ def propagation(path):
                 put(case, "displacement", numpy.where(distance[None, :] <= reach[:, None], 0.1 ** distance, 0.0), "m")
                 put(case, "front_velocity", reach)
                 put(case, "front_wave", 5 * h * numpy.arange(steps + 1))
-                rows.append((f"chain-{method}-h{h}", "chain", method, h, 10, float(speed), 5 * h, 5.0, 5.0, "holds"))
+                rows.append((f"chain-{method}-h{h}", "chain", method, h, 10, float(speed), speed, 5 * h, 5.0, 5.0, "holds"))
         summary = file.create_group("summary")
-        names = ("case", "problem", "method", "step", "farthest", "springs_per_step", "wave_springs_per_step",
+        names = ("case", "problem", "method", "step", "farthest", "springs_per_step", "first_step_velocity", "wave_springs_per_step",
                  "wave_speed", "physical_wave_speed", "verdict")
         for name, column in zip(names, zip(*rows)):
             put(summary, name, list(column))
