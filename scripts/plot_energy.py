@@ -125,6 +125,9 @@ def draw_laws(result, problem, members):
         reference_slopes(right, every, (1, 2))
     left.set_xlabel("step h [s]")
     reference_slopes(left, every, (1, 2, 4) if damped else (1, 5))
+    for panel in (left,) if damped else (left, right):
+        panel.set_xticks(every, [number(step) for step in every])
+        panel.minorticks_off()
     side.set_axis_off()
     handles = [plot_style.plt.Line2D([], [], linewidth=1.4, label=row["method"], **look(index))
                for index, (row, _) in enumerate(members)]

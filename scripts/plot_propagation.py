@@ -92,6 +92,10 @@ def draw_profiles(result, rows):
     """The front of the wave over time: where the displacement has reached a third of its final value."""
     shown = [row for row in rows
              if numpy.isfinite(numpy.asarray(result.values("front_wave", result.case_of(row)), float)).sum() > 5]
+    # One step: the largest at which a method of order 2 is accurate, else the smallest.
+    steps = sorted({row["step"] for row in shown if row["wave_springs_per_step"] <= 0.5})
+    chosen = steps[-1] if steps else min((row["step"] for row in shown), default=None)
+    shown = [row for row in shown if row["step"] == chosen]
     if not shown:
         return None
     figure, axes = new_figure(result, 12.5, 5.6, 1, 2, gridspec_kw={"width_ratios": [1, 0.55]})

@@ -213,8 +213,11 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
       // ln E swings by `swing` about its trend with the frequency 2z: that leaves a slope of 6·swing/(z n²).
       const analysis::Drift trend = analysis::fit_drift(*logarithm);
       const double swing = std::max(0.0, trend.oscillation - 0.5 * std::abs(trend.slope) * taken / 20.0);
+      // The first steps of multistep schemes, and the swing of schemes whose matrix is not normal, leave a
+      // share of the growth itself.
+      constexpr double relative = 1e-5;
       run.growth_tolerance =
-          1e-6 * std::abs(run.predicted_growth) + 12.0 * swing / (z * taken * taken) + 10.0 * epsilon;
+          relative * std::abs(run.predicted_growth) + 12.0 * swing / (z * taken * taken) + 10.0 * epsilon;
     }
   }
   return run;

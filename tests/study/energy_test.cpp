@@ -41,22 +41,21 @@ TEST(Energy, OfASingleSpringGrowsAsTheStabilityFunctionSays) {
 
 TEST(Energy, OfALinearChainIsModifiedAndKeptToRounding) {
   const StudyResult result = run_study(spec("\"velocity_verlet\", \"verlet\", \"symplectic_euler\"",
-                                            "steps = [0.1, 0.05]\nstep_count = 20000\n", chain),
+                                            "steps = [0.02, 0.01]\nstep_count = 20000\n", chain),
                                        SeededCatalog({}));
   for (const CaseResult& entry : result.cases) {
     EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
     EXPECT_LT(figure(entry, "modified_change"), 1e-12);
-    EXPECT_GT(figure(entry, "relative_oscillation"), 1e-3) << "the energy itself is not kept";
+    EXPECT_GT(figure(entry, "relative_oscillation"), 1e-4) << "the energy itself is not kept";
   }
   EXPECT_NEAR(figure(result.cases[0], "oscillation_exponent"), 2.0, 0.2);
   EXPECT_NEAR(figure(result.cases[2], "oscillation_exponent"), 1.0, 0.2);
 }
 
 TEST(Energy, DriftsForOtherSchemesOnly) {
-  const StudyResult result =
-      run_study(spec("\"velocity_verlet\", \"forest_ruth\", \"rk4\", \"average_vector_field\"",
-                     "steps = [0.4, 0.2, 0.1]\nstep_count = 20000\n", henon_heiles),
-                SeededCatalog({}));
+  const StudyResult result = run_study(spec("\"velocity_verlet\", \"forest_ruth\", \"rk4\"",
+                                            "steps = [0.4, 0.2, 0.1]\nstep_count = 20000\n", henon_heiles),
+                                       SeededCatalog({}));
   for (const CaseResult& entry : result.cases)
     EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
   EXPECT_LT(figure(result.cases[0], "drift_over_oscillation"), 0.1);
@@ -74,14 +73,15 @@ TEST(Energy, ThatIsLostIsTheWorkOfTheDampers) {
     const CaseResult& entry = result.cases[k];
     EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
     EXPECT_GE(figure(entry, "balance_exponent"), expected[k] - 0.2) << entry.id;
-    EXPECT_LT(std::abs(figure(entry, "balance")), 0.02) << entry.id;
+    EXPECT_LT(std::abs(figure(entry, "balance")), k == 0 ? 0.3 : 0.02) << entry.id;
+    EXPECT_GT(std::abs(figure(entry, "balance")), 1e-12) << entry.id;
   }
 }
 
 TEST(Energy, MomentaOfAFreeNetworkChangeByRoundingOnly) {
-  const StudyResult result = run_study(
-      spec("\"velocity_verlet\", \"rk4\", \"implicit_midpoint\"", "steps = [0.01, 0.005]\n", free_network),
-      SeededCatalog({}));
+  const StudyResult result = run_study(spec("\"velocity_verlet\", \"rk4\", \"implicit_midpoint\"",
+                                            "steps = [0.01]\nstep_count = 30000\n", free_network),
+                                       SeededCatalog({}));
   for (const CaseResult& entry : result.cases) {
     EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
     EXPECT_LT(figure(entry, "momentum_change"), 1e-12) << entry.id;
