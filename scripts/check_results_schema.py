@@ -8,6 +8,7 @@ held against "Studies in general". Prints one line per deviation; the exit code 
 """
 import re
 import sys
+import tomllib
 
 import h5py
 
@@ -127,7 +128,10 @@ def check(document, path):
         kind = file.attrs["kind"]
         root = [row for row in sections["Root attributes"] if row["kinds"] in ("all", kind)]
         yield from check_attributes(root, file.attrs, "")
-        rows = [row for row in sections.get(f"Kind {kind}", general) if "dataset" in row]
+        tables_of_kind = list(sections.get(f"Kind {kind}", general))
+        if kind == "sweep":  # has what its inner kind has
+            tables_of_kind += sections[f"Kind {tomllib.loads(file.attrs['spec'])['study']['kind']}"]
+        rows = [row for row in tables_of_kind if "dataset" in row]
         rows.sort(key=lambda row: name_of(row).count("<"))  # a fixed name goes before a pattern
         sizes, members = {}, {}
         for name, dataset in datasets(file).items():

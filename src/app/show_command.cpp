@@ -26,7 +26,7 @@ int show(ShowArguments& arguments) {
                                                   : store::TableFormat::latex;
     fmt::print("{}", store::show_table(arguments.path, arguments.table));
   } else {
-    fmt::print("{}", store::show(arguments.path));
+    fmt::print("{}", store::show(arguments.path, arguments.table.columns));
   }
   return exit_success;
 }
@@ -51,9 +51,11 @@ void add_show_command(CLI::App& app, Action& action) {
   command->add_option("--case", arguments->table.of_case, "The raw columns of this case")->type_name("ID");
   command->callback([arguments, csv, markdown, latex, &action] {
     const bool has_table = csv->count() + markdown->count() + latex->count() > 0;
-    if (!has_table && (!arguments->table.columns.empty() || !arguments->table.of_case.empty())) {
-      throw CLI::ValidationError("--columns and --case",
-                                 "expected with one of --csv, --markdown and --latex");
+    if (!has_table && !arguments->table.of_case.empty()) {
+      throw CLI::ValidationError("--case", "expected with one of --csv, --markdown and --latex");
+    }
+    if (arguments->json && !arguments->table.columns.empty()) {
+      throw CLI::ValidationError("--columns", "expected without --json, which has all");
     }
     action = [arguments] { return show(*arguments); };
   });

@@ -4,6 +4,7 @@
 #include "study/convergence.hpp"
 #include "study/dissipation.hpp"
 #include "study/energy.hpp"
+#include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
 #include "study/propagation.hpp"
 #include "study/simulate.hpp"
@@ -17,7 +18,7 @@ namespace {
 std::vector<study::StudyKind> plain_kinds() {
   return {study::convergence_kind(), study::agreement_kind(),   study::energy_kind(),
           study::dissipation_kind(), study::propagation_kind(), study::linear_solver_kind(),
-          study::simulate_kind()};
+          study::jacobian_kind(),    study::simulate_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

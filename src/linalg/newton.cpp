@@ -29,6 +29,7 @@ Status Newton::solve(NewtonProblem& problem, VectorRef u, double scale, Work& wo
       return {StatusCode::non_finite, "the residual of Newton's iteration is not finite"};
     if (residual_norm == 0.0) return {};
     if (Status status = solver_->factorise(problem.matrix(u), work); !status.ok()) return status;
+    correction_.setZero();  // the guess of an iterative solver
     if (LinearSolve solve = solver_->solve(residual_, correction_, work); !solve.status.ok())
       return solve.status;
     ++work.newton_iterations;

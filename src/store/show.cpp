@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.hpp"
 #include "store/json_writer.hpp"
 #include "store/show_content.hpp"
+#include "store/show_table.hpp"
 #include "store/text_table.hpp"
 #include "store/utf8.hpp"
 
@@ -52,11 +54,14 @@ bool is_detail(const study::Column& column, const std::vector<study::Column>& co
   return false;
 }
 
-std::string words(const StudySummary& summary) {
+std::string words(const StudySummary& summary, const std::vector<std::string>& wanted,
+                  const std::string& file) {
   TextTable table;
   std::size_t cases = 0, left_out = 0;
-  for (const study::Column& column : summary.columns) {
-    if (is_detail(column, summary.columns)) {
+  const std::vector<study::Column> columns =
+      wanted.empty() ? summary.columns : pick_columns(summary.columns, wanted, file);
+  for (const study::Column& column : columns) {
+    if (wanted.empty() && is_detail(column, summary.columns)) {
       ++left_out;
       continue;
     }
@@ -88,7 +93,12 @@ std::string words(const StudySummary& summary) {
                      summary.verdicts[1], summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2]);
 }
 
-std::string words(const TrajectorySummary& summary) {
+std::string words(const TrajectorySummary& summary, const std::vector<std::string>& wanted,
+                  const std::string& file) {
+  if (!wanted.empty()) {
+    throw InputError(
+        fmt::format("\"{}\" is a trajectory: columns are there with --csv, --markdown or --latex", file));
+  }
   std::string out = fmt::format("\n{} frames of {} particles and {} springs", summary.frames,
                                 summary.particles, summary.springs);
   if (summary.frames == 0) return out + '\n';
@@ -170,9 +180,12 @@ void write_json(JsonWriter& json, const TrajectorySummary& summary) {
 
 }  // namespace
 
-std::string show(const std::filesystem::path& path) {
-  return std::visit([&](const auto& content) { return origin(path, content.attributes) + words(content); },
-                    read_show_content(path));
+std::string show(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+  return std::visit(
+      [&](const auto& content) {
+        return origin(path, content.attributes) + words(content, columns, path.string());
+      },
+      read_show_content(path));
 }
 
 std::string show_json(const std::filesystem::path& path) {

@@ -84,25 +84,11 @@ std::vector<Column> read_table(const std::filesystem::path& path, const TableCho
 }
 
 std::vector<Column> chosen(std::vector<Column> columns, const TableChoice& choice, const std::string& file) {
-  if (choice.columns.empty()) {
-    if (choice.format != TableFormat::csv) {
-      std::erase_if(columns, [](const Column& column) { return column.name == "reason"; });
-    }
-    return columns;
+  if (!choice.columns.empty()) return pick_columns(columns, choice.columns, file);
+  if (choice.format != TableFormat::csv) {
+    std::erase_if(columns, [](const Column& column) { return column.name == "reason"; });
   }
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const Column& column : columns) names.push_back(column.name);
-  std::vector<Column> picked;
-  for (const std::string& name : choice.columns) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-      throw InputError(fmt::format("\"{}\": found no column \"{}\"{}; there are {}", file, name,
-                                   did_you_mean(name, names), fmt::join(names, ", ")));
-    }
-    picked.push_back(columns[static_cast<std::size_t>(found - names.begin())]);
-  }
-  return picked;
+  return columns;
 }
 
 std::string escaped_for_latex(const std::string& text) {
@@ -186,6 +172,23 @@ std::string joined(const std::vector<std::string>& cells, std::string_view start
 }
 
 }  // namespace
+
+std::vector<Column> pick_columns(const std::vector<Column>& columns, const std::vector<std::string>& names,
+                                 const std::string& file) {
+  std::vector<std::string> present;
+  present.reserve(columns.size());
+  for (const Column& column : columns) present.push_back(column.name);
+  std::vector<Column> picked;
+  for (const std::string& name : names) {
+    const auto found = std::find(present.begin(), present.end(), name);
+    if (found == present.end()) {
+      throw InputError(fmt::format("\"{}\": found no column \"{}\"{}; there are {}", file, name,
+                                   did_you_mean(name, present), fmt::join(present, ", ")));
+    }
+    picked.push_back(columns[static_cast<std::size_t>(found - present.begin())]);
+  }
+  return picked;
+}
 
 std::string show_table(const std::filesystem::path& path, const TableChoice& choice) {
   std::vector<TextColumn> columns;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "study/result.hpp"
+
 namespace fw::store {
 
 /// How a table is written for other programs and papers.
@@ -26,5 +28,10 @@ struct TableChoice {
 /// a trajectory time, energies and the components of both momenta. Units stand in brackets behind the names.
 /// Throws InputError that names the file for a case or column that is not there, with those that are.
 std::string show_table(const std::filesystem::path& path, const TableChoice& choice);
+
+/// Those of the columns that are named, in that order. Throws InputError that names the file and what is
+/// there.
+std::vector<study::Column> pick_columns(const std::vector<study::Column>& columns,
+                                        const std::vector<std::string>& names, const std::string& file);
 
 }  // namespace fw::store

@@ -22,23 +22,32 @@ struct Parameter {
   std::string name;
   std::string unit;
   std::vector<Value> values;
+  std::vector<std::string> texts{};  ///< of the values, as they stand in names of cases
 };
 
-/// The value as it stands in names of cases.
-std::string text_of(const Value& value) {
-  const auto written = [](const auto& held) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, bool>) {
-      return std::string(held ? "true" : "false");
-    } else {
-      return fmt::format("{}", held);
-    }
-  };
-  return std::visit(written, value);
+std::string text_of(const Value& value, int digits) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+  return fmt::format("{:.{}g}", std::get<double>(value), digits);
+}
+
+/// With as few digits, but at least six, as tell the values apart. Throws InputError where a value is there
+/// twice.
+std::vector<std::string> texts_of(const std::vector<Value>& values, const CheckedTable& section) {
+  constexpr int all_digits = 17;
+  for (int digits = 6; digits <= all_digits; ++digits) {
+    std::vector<std::string> texts;
+    texts.reserve(values.size());
+    for (const Value& value : values) texts.push_back(text_of(value, digits));
+    if (std::set<std::string>(texts.begin(), texts.end()).size() == texts.size()) return texts;
+  }
+  section.fail("values", "found the same value twice, expected different ones");
 }
 
 /// A column has one type: numbers are floating-point numbers, whether or not a value is whole.
-SummaryCell cell_of(const Parameter& parameter, const Value& value) {
-  SummaryCell cell{"parameter_" + parameter.name, parameter.unit, text_of(value)};
+SummaryCell cell_of(const Parameter& parameter, std::size_t index) {
+  const Value& value = parameter.values[index];
+  SummaryCell cell{"parameter_" + parameter.name, parameter.unit, parameter.texts[index]};
   if (const auto* number = std::get_if<double>(&value)) cell.value = *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) cell.value = static_cast<double>(*whole);
   return cell;
@@ -99,6 +108,7 @@ std::vector<Parameter> read_parameters(const CheckedTable& spec, bool quick) {
                                        parameter.name));
     }
     if (quick) thin_out(parameter.values, points);
+    parameter.texts = texts_of(parameter.values, section);
   }
   if (parameters.empty()) {
     throw InputError(fmt::format("{}: found no [[parameter]], expected at least one", spec.source_name()));
@@ -177,8 +187,8 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const Value& value = parameters[k].values[point[k]];
       assignments.push_back({parameters[k].path, value});
-      cells.push_back(cell_of(parameters[k], value));
-      name += fmt::format("{}{}={}", k > 0 ? "," : "", parameters[k].name, text_of(value));
+      cells.push_back(cell_of(parameters[k], point[k]));
+      name += fmt::format("{}{}={}", k > 0 ? "," : "", parameters[k].name, parameters[k].texts[point[k]]);
     }
     const std::string where = fmt::format("{} ([study] with {})", spec.source_name(), group_name(name));
     // The directory stays that of the file, so that scenes are found.

@@ -73,6 +73,57 @@ sequence = 3
 scene = "SCENES/damped_network.toml"
 t_end = 0.1
 """,
+    # all parts; a linear force, a system without springs, a run that stops
+    "jacobian": """
+kind = "jacobian"
+title = "Derivatives"
+seed = 3
+
+[springs]
+laws = ["hooke"]
+samples = 5
+
+[derivatives]
+samples = 2
+
+[definiteness]
+compressions = [0.5, 1.2]
+steps = [0.001, 0.1, 0.5]
+
+[runs]
+methods = ["implicit_euler_linearised"]
+compressions = [0.5]
+steps = [0.001, 0.1]
+
+[[problem]]
+scene = "SCENES/buckling_chain.toml"
+t_end = 0.5
+""",
+    # numbers and strings as parameters
+    "sweep": """
+kind = "sweep"
+title = "Sweep"
+
+[[parameter]]
+path = "problem[0].parameters.stiffness"
+unit = "N/m"
+values = [1, 2.5]
+
+[[parameter]]
+path = "methods[0]"
+name = "scheme"
+values = ["rk4", "heun"]
+
+[study]
+kind = "simulate"
+methods = ["rk4"]
+steps = [0.1]
+frames = 2
+
+[[study.problem]]
+name = "harmonic_oscillator"
+t_end = 1.0
+""",
     # with and without a closed form, with and without invariants, with one and with a fixed step, from a scene
     "trajectories": """
 kind = "simulate"
@@ -225,7 +276,7 @@ class ResultsSchema(unittest.TestCase):
         for name in (*STUDIES, *SIMULATED_SCENES):
             with h5py.File(self.folder / f"{name}.h5") as file:
                 file.visititems(lambda path, item: found.add(path) if isinstance(item, h5py.Dataset) else None)
-        for kind in ("trajectory", "convergence", "simulate", "energy", "dissipation", "propagation"):
+        for kind in ("trajectory", "convergence", "simulate", "jacobian", "energy", "dissipation", "propagation"):
             section = DESCRIPTION.split(f"## Kind `{kind}`")[1].split("\n## ")[0]
             rows = [line for line in section.splitlines() if line.startswith("| `/")]
             self.assertGreater(len(rows), 15, kind)

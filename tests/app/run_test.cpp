@@ -184,5 +184,59 @@ TEST_F(Run, RunsStudiesOfScenesWhosePathIsRelativeToTheStudy) {
   EXPECT_TRUE(std::filesystem::exists(scratch_ / "r" / "s.h5"));
 }
 
+TEST_F(Run, RepeatsTheStudyOfAResultFileAndFindsNoDifference) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 9") + "[quick]\nlevels = 6\n");
+  ASSERT_EQ(run_study("r", {"--quick"}).exit_code, 0);
+  std::filesystem::remove(scratch_ / "s.toml");
+  const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("r/s.h5: repeated, "));
+  EXPECT_THAT(result.out, HasSubstr("columns of 4 cases are the same bit for bit"));
+  inspect("assert f.attrs['quick'] == 1 and g.attrs['quick'] == 1\n",
+          {file("r/s.h5"), file("r/s.repeated.h5")});
+  EXPECT_EQ(run(scratch_.path(), {"run", "r/s.h5", "-o", "elsewhere"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(scratch_ / "elsewhere" / "s.repeated.h5"));
+}
+
+TEST_F(Run, RepeatsAStudyOfASceneWhoseFileIsGone) {
+  write_bytes(scratch_ / "scene.toml",
+              "[particles]\nposition = [[0,0,0], [1.2,0,0]]\nmass = 1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0,1]]\nstiffness = 4\nrest_length = 1\n");
+  write_bytes(scratch_ / "s.toml",
+              "kind = 'simulate'\ntitle = 'T'\nmethods = ['velocity_verlet']\nsteps = [0.01]\n"
+              "[[problem]]\nscene = 'scene.toml'\nt_end = 1\n");
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  std::filesystem::remove(scratch_ / "scene.toml");
+  const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("are the same bit for bit"));
+}
+
+TEST_F(Run, ReportsWhatDiffersInARepetition) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  inspect(
+      "import h5py\np = f.filename\nf.close()\ng.close()\nf = h5py.File(p, 'r+')\n"
+      "f['cases/rotation-rk4/error'][2] *= 1.5\nf.close()\n",
+      {file("r/s.h5")});
+  const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("rotation-rk4: error: 1 of "));
+  EXPECT_EQ(count(result.out, "differ, by at most"), 1U) << result.out;
+}
+
+TEST_F(Run, RefusesToRepeatATrajectory) {
+  write_bytes(scratch_ / "scene.toml",
+              "[particles]\nposition = [[0,0,0], [1.2,0,0]]\nmass = 1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0,1]]\nstiffness = 4\nrest_length = 1\n");
+  ASSERT_EQ(run(scratch_.path(),
+                {"simulate", "scene.toml", "--method", "rk4", "--step", "0.1", "--t-end", "1", "-o", "t.h5"})
+                .exit_code,
+            0);
+  const ProcessResult result = run(scratch_.path(), {"run", "t.h5"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("holds no study"));
+}
+
 }  // namespace
 }  // namespace fw::app::test

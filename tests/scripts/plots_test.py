@@ -19,11 +19,13 @@ import plot_construction  # noqa: E402
 import plot_convergence  # noqa: E402
 import plot_dissipation  # noqa: E402
 import plot_energy  # noqa: E402
+import plot_jacobian  # noqa: E402
 import plot_linear_solver  # noqa: E402
 import plot_oscillation  # noqa: E402
 import plot_propagation  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
+import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
 import plot_vector_field  # noqa: E402
 import synthetic_results  # noqa: E402
@@ -133,6 +135,55 @@ class Agreement(PlotTest):
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(lower))[1].all())
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(share))[1].all())
         self.assertIn("1 methods", figure.axes[0].get_xlabel())
+
+
+class Jacobian(PlotTest):
+    def setUp(self):
+        super().setUp()
+        path = self.folder / "jacobian.h5"
+        synthetic_results.jacobian(path)
+        self.figures = self.draw(plot_jacobian, path)
+
+    def test_has_a_figure_for_each_part(self):
+        self.assertEqual(len(self.figures), 6)
+        for figure in self.figures:
+            self.assertTrue(any("federwerk" in text.get_text() for text in figure.texts))
+
+    def test_draws_the_error_over_the_increment_and_the_slopes(self):
+        panel = self.figures[0].axes[0]
+        forward = panel.lines[0]
+        numpy.testing.assert_allclose(forward.get_ydata(), 0.3 * forward.get_xdata() + 1e-16 / forward.get_xdata())
+        self.assertEqual({text.get_text() for text in panel.texts}, {"slope 1", "slope 2", "slope −1", "analytic"})
+        self.assertEqual(panel.get_xlabel(), "increment h [typical length]")
+
+    def test_names_the_printed_formulas_and_draws_measured_over_predicted(self):
+        left, right = self.figures[1].axes[:2]
+        self.assertEqual(sum("printed" in text.get_text() for text in left.texts), 2)
+        numpy.testing.assert_array_equal(right.lines[0].get_xdata(), right.lines[0].get_ydata())
+
+    def test_draws_the_blocks_of_a_pattern(self):
+        image = self.figures[2].axes[0].images[1].get_array()
+        self.assertEqual(image.shape, (3, 3))
+        self.assertEqual(numpy.ma.masked_invalid(image).count(), 5)
+
+    def test_draws_the_limit_where_there_is_one(self):
+        exact, projected = self.figures[3].axes[:2]
+        predicted, found = exact.lines[:2]
+        numpy.testing.assert_array_equal(predicted.get_xdata(), found.get_xdata())
+        self.assertEqual(numpy.isfinite(predicted.get_xdata()).sum(), 2)
+        self.assertEqual(numpy.isfinite(projected.lines[0].get_xdata()).sum(), 0)
+        self.assertIn("predicted: 1/μ", texts_of_legend(exact))
+
+    def test_marks_failed_iterations_apart(self):
+        failures = self.figures[4].axes[0].collections[0].get_array()
+        eigenvalue = 1 - numpy.outer([200, 200 * (1 / 0.9 - 1), 0], numpy.geomspace(1e-3, 1, 7) ** 2)
+        self.assertEqual(numpy.ma.masked_invalid(failures).count(), numpy.count_nonzero(eigenvalue <= 0))
+
+    def test_marks_runs_that_stopped(self):
+        panel = self.figures[5].axes[0]
+        stopped = [line for line in panel.lines if line.get_marker() == "x" and len(line.get_xdata())]
+        self.assertEqual([len(line.get_xdata()) for line in stopped], [3])
+        self.assertIn("matrix indefinite", " ".join(texts_of_legend(panel)))
 
 
 class LinearSolver(PlotTest):
@@ -381,6 +432,26 @@ class Trajectory(PlotTest):
     def test_many_particles_have_a_choice_of_paths_that_is_announced(self):
         figure, = self.draw(plot_trajectory, self.write("trajectory", particles=60))
         self.assertIn("paths (12 of 60), seen along y", [axes.get_title(loc="left") for axes in figure.axes])
+
+
+class Sweep(PlotTest):
+    def test_has_a_line_per_method_and_other_parameter_over_the_first_one(self):
+        figure, = self.draw(plot_sweep, self.write("sweep"))
+        axes, = figure.axes
+        self.assertEqual(sorted(texts_of_legend(axes)), ["rk4, step = 0.01 s", "rk4, step = 0.02 s",
+                                                         "velocity_verlet, step = 0.01 s", "velocity_verlet, step = 0.02 s"])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("stiffness [N/m]", "end error [m]"))
+        line = next(line for line in axes.lines if line.get_label() == "rk4, step = 0.02 s")
+        numpy.testing.assert_allclose(line.get_ydata(), numpy.array([1, 10, 100]) * 0.02 ** 4)
+        self.assertEqual((axes.get_xscale(), axes.get_yscale()), ("log", "log"))
+
+    def test_shows_the_first_number_that_varies_where_none_is_named(self):
+        figure, = self.draw(plot_sweep, self.write("sweep", quantities="[]"))
+        self.assertEqual(figure.axes[0].get_ylabel(), "end error [m]")
+
+    def test_refuses_a_quantity_that_is_not_there(self):
+        with self.assertRaisesRegex(ResultError, "end_eror"):
+            self.draw(plot_sweep, self.write("sweep", quantities='["end_eror"]'))
 
 
 class SimulatedCases(PlotTest):

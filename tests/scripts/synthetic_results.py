@@ -326,7 +326,77 @@ def construction(path):
 LATER = {"energy": energy, "dissipation": dissipation, "propagation": propagation, "vector_field": vector_field,
          "oscillation": oscillation, "construction": construction}
 
-ALL = {"agreement": agreement, "convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral}
+def jacobian(path):
+    """All four parts of a study of one spring, with the slopes and limits that theory has."""
+    rows = []
+    figures = ("deviation", "truncation_slope", "rounding_slope", "best_increment", "filled", "compression")
+
+    def row(case, part, variant, subject="spring", **values):
+        rows.append([case, subject, part, variant, *(values.get(name, numpy.nan) for name in figures)])
+
+    increment = 10.0 ** -numpy.arange(1, 14.1, 0.25)
+    with new_file(path, "jacobian", "Derivatives of a spring") as file:
+        for order, formula in ((1, "forward"), (2, "central")):
+            error = 0.3 * increment ** order + 1e-16 / increment
+            case = file.create_group(f"cases/spring-{formula}")
+            put(case, "increment", increment)
+            put(case, "deviation", error)
+            row(f"spring-{formula}", "derivative", formula, truncation_slope=order, rounding_slope=-1,
+                best_increment=increment[error.argmin()])
+        for formula, size in (("analytic", 1e-16), ("printed_e1", 3.0), ("printed_e2", 2.0)):
+            case = file.create_group(f"cases/spring-{formula}")
+            put(case, "deviation", size * numpy.linspace(1, 2, 9))
+            row(f"spring-{formula}", "derivative", formula, deviation=2 * size)
+            if formula != "analytic":
+                put(case, "block_difference", size * numpy.arange(1, 10), "N/m")
+                put(case, "predicted_difference", size * numpy.arange(1, 10), "N/m")
+        case = file.create_group("cases/chain-pattern")
+        put(case, "block_row", [0, 0, 1, 1, 1, 2, 2])
+        put(case, "block_column", [0, 1, 0, 1, 2, 1, 2])
+        put(case, "largest_entry", [0.0, 0.0, 5.0, 10.0, 5.0, 5.0, 10.0], "SI")
+        row("chain-pattern", "pattern", "3x3 blocks", subject="chain", filled=7 / 9)
+        compression, step = numpy.array([0.5, 0.9, 1.1]), numpy.geomspace(1e-3, 1, 7)
+        for model in ("exact", "psd_projection"):
+            growth = numpy.maximum(1 / compression - 1, 0) * 200 * (model == "exact")
+            eigenvalue = 1 - numpy.outer(growth, step ** 2)
+            limit = numpy.where(growth > 0, 1 / numpy.sqrt(numpy.maximum(growth, 1e-9)), numpy.nan)
+            case = file.create_group(f"cases/spring-{model}")
+            put(case, "compression", compression)
+            put(case, "step", step, "s")
+            put(case, "limit_step", limit, "s")
+            put(case, "predicted_limit_step", limit, "s")
+            put(case, "eigenvalue", eigenvalue, "kg")
+            for name in ("newton_iterations", "newton_cg_iterations", "cg_iterations"):
+                put(case, name, numpy.where(eigenvalue > 0, 3, -1))
+            row(f"spring-{model}", "definiteness", model)
+        for method in ("implicit_euler_linearised", "implicit_euler"):
+            case = file.create_group(f"cases/spring-{method}-L0.5")
+            stopped = (step > 0.08) & (method != "implicit_euler")
+            put(case, "step", step, "s")
+            put(case, "status", ["matrix_indefinite" if stop else "success" for stop in stopped], "")
+            put(case, "energy_gain", 10 * step)
+            row(f"spring-{method}-L0.5", "runs", method, compression=0.5)
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "subject", "part", "variant", *figures), zip(*rows)):
+            put(summary, name, list(column))
+
+
+def sweep(path, quantities='["end_error"]'):
+    """end_error = stiffness * step^p for two schemes and two steps."""
+    rows = [(stiffness, step, method, stiffness * step ** METHODS[method])
+            for stiffness in (1.0, 10.0, 100.0) for step in (0.01, 0.02) for method in ("velocity_verlet", "rk4")]
+    with new_file(path, "sweep", "Error over stiffness and step") as file:
+        file.attrs["spec"] = f'kind = "sweep"\nquantities = {quantities}\n'
+        summary = file.create_group("summary", track_order=True)
+        put(summary, "case", [f"stiffness={row[0]:g},step={row[1]:g}-{row[2]}" for row in rows], "")
+        put(summary, "parameter_stiffness", numpy.array([row[0] for row in rows]), "N/m")
+        put(summary, "parameter_step", numpy.array([row[1] for row in rows]), "s")
+        put(summary, "method", [row[2] for row in rows], "")
+        put(summary, "constant", numpy.ones(len(rows)))
+        put(summary, "end_error", numpy.array([row[3] for row in rows]), "m")
+
+
+ALL = {"agreement": agreement, "convergence": convergence, "trajectory": trajectory, "slope_field": slope_field, "spiral": spiral, "sweep": sweep}
 
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
@@ -336,4 +406,5 @@ if __name__ == "__main__":
     linear_solver(folder / "linear_solver.h5")
     for name, write in LATER.items():
         write(folder / f"{name}.h5")
+    jacobian(folder / "jacobian.h5")
     trajectory(folder / "stopped.h5", particles=60, status="blow_up")

@@ -9,6 +9,7 @@
 #include "samples.hpp"
 #include "scratch_directory.hpp"
 #include "store/json_writer.hpp"
+#include "store/show_table.hpp"
 #include "store/study_file.hpp"
 #include "store/text_table.hpp"
 #include "store/trajectory_summary.hpp"
@@ -177,6 +178,82 @@ TEST(Show, SaysWhyAFileCannotBeShown) {
   refuses("text.h5", "no HDF5 file");
   refuses("directory", "no regular file");
   refuses("missing.h5", "No such file");
+}
+
+TEST(Show, TheColumnsThatAreNamed) {
+  const ScratchDirectory scratch;
+  write_study(scratch / "a.h5", "", sample_study(2));
+  EXPECT_THAT(show(scratch / "a.h5", {"order", "method"}),
+              HasSubstr("order  method\n-----  ------\n    4  rk0\n  nan  rk1\n"));
+  EXPECT_THAT(([&] { show(scratch / "a.h5", {"methd"}); }),
+              ThrowsMessage<InputError>(HasSubstr("did you mean \"method\"")));
+  write_trajectory(scratch / "t.h5", 3, 4);
+  EXPECT_THAT(([&] { show(scratch / "t.h5", {"time"}); }), ThrowsMessage<InputError>(HasSubstr("--csv")));
+}
+
+TEST(ShowTable, WritesCsvThatReadsBackInEveryDigit) {
+  const ScratchDirectory scratch;
+  study::StudyResult study = sample_study(2);
+  study.cases[0].reason = "a, \"b\"\nc";
+  for (study::SummaryCell& cell : study.cases[0].summary) {
+    if (cell.name == "reason") cell.value = study.cases[0].reason;
+    if (cell.name == "order") cell.value = 0.1 + 0.2;
+  }
+  write_study(scratch / "a.h5", "", study);
+  EXPECT_EQ(show_table(scratch / "a.h5", {.format = TableFormat::csv,
+                                          .of_case = "",
+                                          .columns = {"method", "order", "seconds", "reason"}}),
+            "method,order,seconds [s],reason\n"
+            "rk0,0.30000000000000004,0.5,\"a, \"\"b\"\"\nc\"\n"
+            "rk1,nan,0.5,Ordnung 1 ± 0.1\n");
+}
+
+TEST(ShowTable, WritesMarkdownAndLatexThatNeedNoMending) {
+  const ScratchDirectory scratch;
+  study::StudyResult study = sample_study(2);
+  for (study::SummaryCell& cell : study.cases[0].summary) {
+    if (cell.name == "method") cell.value = std::string("a|b_c 5%");
+    if (cell.name == "order") cell.value = -1.23456789e-7;
+  }
+  write_study(scratch / "a.h5", "", study);
+  EXPECT_EQ(show_table(scratch / "a.h5",
+                       {.format = TableFormat::markdown, .of_case = "", .columns = {"method", "order"}}),
+            "| method | order |\n|---|---:|\n| a\\|b_c 5% | -1.23457e-07 |\n| rk1 | nan |\n");
+  EXPECT_EQ(
+      show_table(scratch / "a.h5",
+                 {.format = TableFormat::latex, .of_case = "", .columns = {"method", "order"}}),
+      "\\begin{tabular}{lr}\n  \\toprule\n  method & order \\\\\n  \\midrule\n"
+      "  a|b\\_c 5\\% & $-1.235 \\cdot 10^{-7}$ \\\\\n  rk1 & -- \\\\\n  \\bottomrule\n\\end{tabular}\n");
+  EXPECT_THAT(show_table(scratch / "a.h5", {.format = TableFormat::latex, .of_case = "", .columns = {}}),
+              Not(HasSubstr("reason")));
+}
+
+TEST(ShowTable, ShowsTheColumnsOfACaseAndTheFramesOfATrajectory) {
+  const ScratchDirectory scratch;
+  write_study(scratch / "a.h5", "", sample_study(2));
+  const std::string of_case =
+      show_table(scratch / "a.h5", {.format = TableFormat::csv, .of_case = "pendel-rk0", .columns = {}});
+  EXPECT_THAT(of_case, HasSubstr("step [s]"));
+  write_trajectory(scratch / "t.h5", 3, 4);
+  const std::string frames =
+      show_table(scratch / "t.h5",
+                 {.format = TableFormat::csv, .of_case = "", .columns = {"time", "linear_momentum_y"}});
+  EXPECT_EQ(frames, "time [s],linear_momentum_y [kg*m/s]\n0,5\n0.5,5\n1,5\n1.5,5\n");
+}
+
+TEST(ShowTable, NamesWhatIsThereWhereSomethingIsNot) {
+  const ScratchDirectory scratch;
+  write_study(scratch / "a.h5", "", sample_study(2));
+  EXPECT_THAT(
+      ([&] {
+        show_table(scratch / "a.h5", {.format = TableFormat::csv, .of_case = "", .columns = {"ordr"}});
+      }),
+      ThrowsMessage<InputError>(::testing::AllOf(HasSubstr("a.h5"), HasSubstr("did you mean \"order\""))));
+  EXPECT_THAT(([&] {
+                show_table(scratch / "a.h5",
+                           {.format = TableFormat::csv, .of_case = "pendel-rk7", .columns = {}});
+              }),
+              ThrowsMessage<InputError>(HasSubstr("found no case \"pendel-rk7\"")));
 }
 
 }  // namespace
