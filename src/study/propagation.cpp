@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gsl/gsl_fit.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 
+#include "analysis/binned_series.hpp"
 #include "analysis/influence_front.hpp"
 #include "core/error.hpp"
 #include "study/disturbed_network.hpp"
@@ -166,9 +166,9 @@ class PropagationCase {
       fronts.push_back(seen_.waves[k]);
     }
     if (times.size() < 5) return;
-    double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, squares = 0.0;
-    gsl_fit_linear(times.data(), 1, fronts.data(), 1, times.size(), &intercept, &speed_, &cov00, &cov01,
-                   &cov11, &squares);
+    analysis::BinnedSeries series(times.size(), 1);
+    for (std::size_t k = 0; k < times.size(); ++k) series.add(times[k], fronts[k]);
+    speed_ = series.slope();
   }
 
   void judge(CaseResult& result) const {

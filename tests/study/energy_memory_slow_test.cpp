@@ -18,7 +18,8 @@ std::size_t peak_memory() {
 }
 
 std::string spec(std::uint64_t steps) {
-  return "kind = \"energy\"\ntitle = \"test\"\nmethods = [\"velocity_verlet\"]\n[energy]\nsteps = [0.2]\nstep_count = " +
+  return "kind = \"energy\"\ntitle = \"test\"\nmethods = [\"velocity_verlet\"]\n[energy]\nsteps = "
+         "[0.2]\nstep_count = " +
          std::to_string(steps) + "\n[[problem]]\nname = \"harmonic_oscillator\"\n";
 }
 
