@@ -285,7 +285,7 @@ class ResultsSchema(unittest.TestCase):
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
-        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories"), ("trajectory", "double_spring"),
+        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring"),
                            ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")
             section, separator, after = section.partition("\n## ")
@@ -294,7 +294,7 @@ class ResultsSchema(unittest.TestCase):
                     document = before + f"## Kind `{kind}`" + section.replace(line + "\n", "", 1) + separator + after
                     if section.endswith(line):
                         document = document.replace(line, "", 1)
-                    code, text = self.check(self.folder / f"{name}.h5", description=document)
+                    code, text = self.check(*(self.folder / f"{each}.h5" for each in name.split()), description=document)
                     self.assertEqual(code, 1)
                     self.assertIn("is not described", text)
 
