@@ -11,13 +11,14 @@ namespace fw::catalog {
 class BuiltinCatalog final : public study::Catalog {
  public:
   std::unique_ptr<Integrator> method(const std::string& call) const override { return make_method(call); }
+  schemes::SchemeData scheme_data(const std::string& call) const override { return scheme_of(call); }
   std::vector<std::string> method_names() const override {
     std::vector<std::string> names;
     for (const MethodEntry& entry : methods()) names.push_back(entry.name);
     return names;
   }
-  schemes::SchemeData scheme_data(const std::string& call) const override {
-    return catalog::scheme_data(call);
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+    return catalog::equivalent_scheme(call);
   }
   analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
     return catalog::oscillator_theory(call);

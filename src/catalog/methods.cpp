@@ -309,4 +309,15 @@ std::unique_ptr<Integrator> make_method(const MethodCall& call) {
   }
 }
 
+schemes::SchemeData scheme_of(const std::string& text) {
+  const MethodCall call = parse_method_call(text);
+  const auto is_of_controller = [](const auto& option) {
+    return std::any_of(controller_options.begin(), controller_options.end(),
+                       [&](const OptionInfo& known) { return known.name == option.first; });
+  };
+  const MethodEntry& entry = find_method(call.name);
+  if (!std::all_of(call.options.begin(), call.options.end(), is_of_controller)) return {};
+  return entry.data;
+}
+
 }  // namespace fw::catalog

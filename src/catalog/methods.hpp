@@ -61,4 +61,8 @@ const MethodEntry& find_method(const std::string& name);
 std::unique_ptr<Integrator> make_method(const std::string& call);
 std::unique_ptr<Integrator> make_method(const MethodCall& call);
 
+/// The coefficients behind a call; std::monostate where there are none, or where an option may change the
+/// scheme (those of a step size controller do not).
+schemes::SchemeData scheme_of(const std::string& call);
+
 }  // namespace fw::catalog

@@ -44,7 +44,7 @@ AmplificationFactors of_parameters(const MethodCall& call) {
 
 }  // namespace
 
-schemes::SchemeData scheme_data(const std::string& text) {
+schemes::SchemeData equivalent_scheme(const std::string& text) {
   const MethodCall call = parse_method_call(text);
   if (call.name == "verlet" || call.name == "verlet_backward_velocity")
     return find_method("velocity_verlet").data;
@@ -64,7 +64,7 @@ AmplificationFactors oscillator_theory(const std::string& text) {
     return analysis::exact_amplification_factors();
   }
   if (AmplificationFactors factors = of_parameters(call)) return factors;
-  return amplification_factors(scheme_data(text));
+  return amplification_factors(equivalent_scheme(text));
 }
 
 }  // namespace fw::catalog

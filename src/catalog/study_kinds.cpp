@@ -8,7 +8,9 @@
 #include "study/linear_solver.hpp"
 #include "study/propagation.hpp"
 #include "study/simulate.hpp"
+#include "study/stiffness.hpp"
 #include "study/sweep.hpp"
+#include "study/work_precision.hpp"
 
 namespace fw::catalog {
 
@@ -18,7 +20,8 @@ namespace {
 std::vector<study::StudyKind> plain_kinds() {
   return {study::convergence_kind(), study::agreement_kind(),   study::energy_kind(),
           study::dissipation_kind(), study::propagation_kind(), study::linear_solver_kind(),
-          study::jacobian_kind(),    study::simulate_kind()};
+          study::jacobian_kind(),    study::simulate_kind(),    study::work_precision_kind(),
+          study::stiffness_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

@@ -8,6 +8,7 @@
 #include "analysis/oscillator_amplification.hpp"
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
+#include "schemes/scheme_data.hpp"
 
 namespace fw::study {
 
@@ -21,12 +22,16 @@ class Catalog {
   /// InputError for an unknown name (with the nearest one) or option.
   virtual std::unique_ptr<Integrator> method(const std::string& call) const = 0;
 
+  /// The coefficients that define the scheme of a call; std::monostate where it is not given by any, or where
+  /// an option changes what the scheme is.
+  virtual schemes::SchemeData scheme_data(const std::string& call) const = 0;
+
   /// The names of all methods, in the order of the list.
   virtual std::vector<std::string> method_names() const = 0;
 
   /// The coefficients of the method of a call, or of the scheme that it is on forces f(q) (`verlet` is
   /// velocity Verlet); std::monostate where it is not given by coefficients.
-  virtual schemes::SchemeData scheme_data(const std::string& call) const = 0;
+  virtual schemes::SchemeData equivalent_scheme(const std::string& call) const = 0;
 
   /// What theory says of the method of a call on linear oscillators; empty where it says nothing.
   virtual analysis::AmplificationFactors oscillator_theory(const std::string& call) const = 0;

@@ -47,6 +47,10 @@ struct Plan {
   double time_limit = 0.0;              ///< [s] of one case; 0: none
   std::vector<std::string> warnings{};  ///< what is legal but has no effect, one sentence each
   std::vector<PlannedCase> cases{};
+  /// What only all cases together tell, such as a front over methods: fills in columns and cells after the
+  /// last case, from the cases that there are. It runs again on cases that an earlier run kept, so that it
+  /// has to replace what it wrote. Empty: nothing.
+  std::function<void(StudyResult&)> conclude{};
 };
 
 /// One kind of study: reads its specification into a plan. `quick` applies the study's own [quick] section.

@@ -48,6 +48,20 @@ struct CaseResult {
   std::string reason;
 };
 
+/// The column or cell of that name; throws std::logic_error where the case has none.
+const Column& column_of(const CaseResult& result, std::string_view name);
+const SummaryCell& cell_of(const CaseResult& result, std::string_view name);
+
+/// The values of a column as numbers.
+std::vector<double> numbers_of(const CaseResult& result, std::string_view name);
+/// The text of a cell.
+const std::string& text_of(const CaseResult& result, std::string_view name);
+
+/// Puts a column or cell in the place of the one of that name; a cell has to be there, a column is added.
+void replace_column(CaseResult& result, Column column);
+void replace_cell(CaseResult& result, std::string_view name,
+                  std::variant<double, std::int64_t, std::string> value);
+
 /// The result of a study: everything a result file holds but its provenance.
 struct StudyResult {
   std::string kind;  ///< for example "convergence"

@@ -274,7 +274,9 @@ class Run {
 }  // namespace
 
 StudyResult run_plan(const Plan& plan, CaseArchive& archive, const RunOptions& options) {
-  return Run(plan, archive, options).run();
+  StudyResult study = Run(plan, archive, options).run();
+  if (plan.conclude) plan.conclude(study);
+  return study;
 }
 
 }  // namespace fw::study

@@ -1,5 +1,6 @@
 #include "study/shared_problem.hpp"
 
+#include "analysis/binary64_reference.hpp"
 #include "analysis/reference_cache.hpp"
 
 namespace fw::study {
@@ -7,10 +8,14 @@ namespace fw::study {
 const analysis::ReferenceSolution& SharedProblem::reference(const RunContext& context) const {
   std::call_once(once_, [&] {
     const double end[] = {ivp().t1};
-    reference_ =
-        problem_.problem.exact
-            ? analysis::reference(problem_.problem, end)
-            : analysis::ReferenceCache(context.reference_cache).certified(problem_.identity, ivp(), end);
+    if (problem_.problem.exact) {
+      reference_ = analysis::reference(problem_.problem, end);
+    } else if (arithmetic_ == ReferenceArithmetic::binary128) {
+      reference_ = analysis::ReferenceCache(context.reference_cache).certified(problem_.identity, ivp(), end);
+    } else {
+      reference_ = analysis::binary64_reference(ivp(), [&context] { return context.is_interrupted(); });
+      if (context.is_interrupted()) throw Interrupted{};  // the next call tries again
+    }
   });
   return reference_;
 }

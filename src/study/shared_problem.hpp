@@ -8,11 +8,19 @@
 
 namespace fw::study {
 
+/// In which arithmetic a reference without closed form is computed.
+enum class ReferenceArithmetic {
+  binary128,  ///< certified, about 19 digits
+  binary64,   ///< by two methods in double, about 9 digits: for systems too large for the other
+};
+
 /// A problem that several cases share, with its end state in closed form or as a certified reference, which
 /// the first case to need it computes for all. Safe to use from several threads.
 class SharedProblem {
  public:
-  explicit SharedProblem(StudyProblem problem) : problem_(std::move(problem)) {}
+  explicit SharedProblem(StudyProblem problem,
+                         ReferenceArithmetic arithmetic = ReferenceArithmetic::binary128)
+      : problem_(std::move(problem)), arithmetic_(arithmetic) {}
 
   const StudyProblem& entry() const { return problem_; }
   const Ivp& ivp() const { return problem_.problem.ivp; }
@@ -22,6 +30,7 @@ class SharedProblem {
 
  private:
   StudyProblem problem_;
+  ReferenceArithmetic arithmetic_;
   mutable std::once_flag once_;
   mutable analysis::ReferenceSolution reference_;
 };

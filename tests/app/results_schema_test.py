@@ -124,6 +124,40 @@ frames = 2
 name = "harmonic_oscillator"
 t_end = 1.0
 """,
+    # constant steps and tolerances, a method that cannot run, and the fronts
+    "work_precision": """
+kind = "work_precision"
+title = "Error against work"
+methods = ["rk4", "verlet", "dormand_prince_54"]
+
+[work_precision]
+max_evaluations = 500
+repetitions = 2
+shortest_sample = 1e-5
+
+[[problem]]
+name = "dahlquist"
+
+[[problem]]
+scene = "SCENES/harmonic_oscillator.toml"
+label = "scene"
+t_end = 1.0
+""",
+    # costs, orders and overviews; a method that cannot run
+    "stiffness": """
+kind = "stiffness"
+title = "Stiffness"
+methods = ["rk4", "verlet", "implicit_euler"]
+
+[stiffness]
+map_levels = 6
+repetitions = 2
+shortest_sample = 1e-5
+
+[[problem]]
+name = "prothero_robinson"
+vary = { parameter = "lambda", values = [-1e1, -1e2, -1e3] }
+""",
     # with and without a closed form, with and without invariants, with one and with a fixed step, from a scene
     "trajectories": """
 kind = "simulate"
@@ -276,7 +310,8 @@ class ResultsSchema(unittest.TestCase):
         for name in (*STUDIES, *SIMULATED_SCENES):
             with h5py.File(self.folder / f"{name}.h5") as file:
                 file.visititems(lambda path, item: found.add(path) if isinstance(item, h5py.Dataset) else None)
-        for kind in ("trajectory", "convergence", "simulate", "jacobian", "energy", "dissipation", "propagation"):
+        for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness", "energy",
+                     "dissipation", "propagation"):
             section = DESCRIPTION.split(f"## Kind `{kind}`")[1].split("\n## ")[0]
             rows = [line for line in section.splitlines() if line.startswith("| `/")]
             self.assertGreater(len(rows), 15, kind)

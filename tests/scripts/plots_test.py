@@ -25,9 +25,11 @@ import plot_oscillation  # noqa: E402
 import plot_propagation  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
+import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
 import plot_vector_field  # noqa: E402
+import plot_work_precision  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
 
@@ -135,6 +137,51 @@ class Agreement(PlotTest):
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(lower))[1].all())
         self.assertTrue(numpy.ma.getmaskarray(numpy.ma.masked_invalid(share))[1].all())
         self.assertIn("1 methods", figure.axes[0].get_xlabel())
+
+
+class WorkPrecision(PlotTest):
+    def figures(self, **options):
+        path = self.folder / "work_precision.h5"
+        synthetic_results.work_precision(path, **options)
+        return self.draw(plot_work_precision, path)
+
+    def test_colours_the_methods_on_the_front_and_names_the_others(self):
+        figure, = self.figures()
+        legend = texts_of_legend(figure.axes[-1])
+        self.assertIn("rk4", legend)
+        self.assertNotIn("implicit_midpoint", legend)
+        self.assertTrue(any("implicit_midpoint" in text.get_text() for text in figure.axes[-1].texts))
+        lines = {line.get_color() for line in figure.axes[0].lines}
+        self.assertIn(plot_work_precision.PALE, lines)
+        self.assertIn(plot_style.PALETTE[0], lines)
+
+    def test_draws_factorisations_where_there_are_any(self):
+        titles = [axes.get_xlabel() for axes in self.figures()[0].axes]
+        self.assertEqual(titles, ["right-hand sides", "wall-clock time [s]", "factorisations", ""])
+        titles = [axes.get_xlabel() for axes in self.figures(factorisations=1)[0].axes]
+        self.assertEqual(titles, ["right-hand sides", "wall-clock time [s]", ""])
+
+
+class Stiffness(PlotTest):
+    def figures(self, **options):
+        path = self.folder / "stiffness.h5"
+        synthetic_results.stiffness(path, **options)
+        return self.draw(plot_stiffness, path)
+
+    def test_marks_where_implicit_methods_begin_to_pay(self):
+        cost, _ = self.figures()
+        self.assertEqual(sum("implicit pays" in text.get_text() for axes in cost.axes for text in axes.texts), 2)
+        cost, _ = self.figures(crosses=False)
+        self.assertEqual(sum("implicit pays" in text.get_text() for axes in cost.axes for text in axes.texts), 0)
+
+    def test_draws_every_order_of_the_map_at_its_step_and_eigenvalue(self):
+        _, orders = self.figures()
+        mesh, = orders.axes[0].collections
+        drawn = numpy.ma.filled(mesh.get_array().reshape(5, 5), numpy.nan)
+        steps = 0.1 / 2.0 ** numpy.arange(6)
+        expected = numpy.where(steps[None, 1:] * numpy.geomspace(10, 1000, 5)[:, None] < 1, 2.0, 1.0)
+        self.assertTrue((drawn == expected).all())
+        self.assertIn("not stiff 2.00 (2), stiff 1.00 (1)", orders.axes[0].get_title("left"))
 
 
 class Jacobian(PlotTest):

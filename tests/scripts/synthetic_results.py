@@ -326,6 +326,81 @@ def construction(path):
 LATER = {"energy": energy, "dissipation": dissipation, "propagation": propagation, "vector_field": vector_field,
          "oscillation": oscillation, "construction": construction}
 
+def work_precision(path, factorisations=40):
+    """Two ladders on one problem: an explicit method of order 4 on the front, an implicit one of order 2 above it."""
+    work = numpy.array([100, 200, 400, 800])
+    with new_file(path, "work_precision", "Error against work") as file:
+        rows, front = [], []
+        for method, order, dear in (("rk4", 4, 1), ("implicit_midpoint", 2, 3)):
+            name = f"oscillator-{method}-fixed"
+            case = file.create_group(f"cases/{name}")
+            error = (work / 50.0) ** -order
+            put(case, "error", error)
+            put(case, "rhs_evaluations", work * dear)
+            put(case, "factorisations", work // work[0] * (factorisations if dear > 1 else 0))
+            put(case, "seconds", 1e-7 * work * dear, "s")
+            on_front = 4 if method == "rk4" else 0
+            rows.append((name, "oscillator", method, "fixed", on_front, on_front))
+            front = front or [work, error]
+        case = file.create_group("cases/oscillator-front")
+        for measure, factor, unit in (("rhs_evaluations", 1.0, "1"), ("seconds", 1e-7, "s")):
+            put(case, f"front_{measure}", factor * front[0], unit)
+            put(case, f"front_{measure}_error", front[1])
+        rows.append(("oscillator-front", "oscillator", "Pareto front", "", 4, 4))
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "problem", "method", "control", "front_points_rhs_evaluations",
+                                 "front_points_seconds"), zip(*rows)):
+            put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
+
+
+def stiffness(path, crosses=True):
+    """Costs that cross at a stiffness of 1e4, and an order map with order 2 below and 1 above h|lambda| = 1."""
+    values = numpy.geomspace(1e2, 1e6, 5)
+    eigenvalues = numpy.sqrt(values)
+    with new_file(path, "stiffness", "Stiffness") as file:
+        rows = []
+
+        def case(method, measure, stepping):
+            name = f"pendulum-{method}-{measure}"
+            rows.append([name, "pendulum", method, measure, stepping, 2, numpy.nan, numpy.nan, numpy.nan, numpy.nan,
+                         numpy.nan, numpy.nan, numpy.nan, numpy.nan, numpy.nan])
+            group = file.create_group(f"cases/{name}")
+            put(group, "parameter", values, "SI")
+            group["parameter"].attrs["name"] = "stiffness"
+            put(group, "largest_eigenvalue", eigenvalues, "1/s")
+            return group
+
+        costs = {"explicit": eigenvalues, "implicit": numpy.full(5, 100.0)}
+        for method, stepping in (("velocity_verlet", "explicit"), ("implicit_euler", "implicit")):
+            group = case(method, "cost", stepping)
+            put(group, "accepted_steps", costs[stepping].astype(int))
+            put(group, "rejected_steps", numpy.zeros(5, int))
+            put(group, "cost", costs[stepping])
+            put(group, "seconds", 1e-6 * costs[stepping], "s")
+        group = case("implicit_midpoint", "orders", "implicit")
+        steps = 0.1 / 2.0 ** numpy.arange(6)
+        put(group, "step", steps, "s")
+        order = numpy.where(steps[None, :] * eigenvalues[:, None] < 1, 2.0, 1.0)
+        order[:, 0] = numpy.nan
+        put(group, "local_order", order)
+        rows[-1][6:9] = [2.0, 1.0, 1.0]
+        group = case("overview", "overview", "")
+        put(group, "stiffness_index", 2.3 * eigenvalues)
+        put(group, "eigenvalue_ratio", eigenvalues)
+        put(group, "stiffness_ratio", numpy.full(5, numpy.nan))
+        for stepping, cost in costs.items():
+            for name, factor, unit in (("cost", 1.0, "1"), ("seconds", 1e-6, "s")):
+                put(group, f"cheapest_{stepping}_{name}", factor * cost, unit)
+                put(group, f"cheapest_{stepping}_{name}_spread", numpy.full(5, 1.1))
+        rows[-1][9:15] = [1e4, 9e3, 1.1e4] * 2 if crosses else [numpy.nan] * 6
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "problem", "method", "measure", "stepping", "classical_order", "nonstiff_order",
+                                 "stiff_order", "predicted_stiff_order", "crossing_cost", "crossing_cost_low",
+                                 "crossing_cost_high", "crossing_seconds", "crossing_seconds_low",
+                                 "crossing_seconds_high"), zip(*rows)):
+            put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
+
+
 def jacobian(path):
     """All four parts of a study of one spring, with the slopes and limits that theory has."""
     rows = []
@@ -406,5 +481,7 @@ if __name__ == "__main__":
     linear_solver(folder / "linear_solver.h5")
     for name, write in LATER.items():
         write(folder / f"{name}.h5")
+    work_precision(folder / "work_precision.h5")
+    stiffness(folder / "stiffness.h5")
     jacobian(folder / "jacobian.h5")
     trajectory(folder / "stopped.h5", particles=60, status="blow_up")

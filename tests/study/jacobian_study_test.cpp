@@ -26,9 +26,12 @@ class WrongProblems final : public Catalog {
  public:
   explicit WrongProblems(Alteration alteration) : alteration_(std::move(alteration)) {}
   std::unique_ptr<Integrator> method(const std::string& call) const override { return builtin_.method(call); }
-  std::vector<std::string> method_names() const override { return builtin_.method_names(); }
   schemes::SchemeData scheme_data(const std::string& call) const override {
     return builtin_.scheme_data(call);
+  }
+  std::vector<std::string> method_names() const override { return builtin_.method_names(); }
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+    return builtin_.equivalent_scheme(call);
   }
   analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
     return builtin_.oscillator_theory(call);
@@ -123,9 +126,12 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
     std::unique_ptr<Integrator> method(const std::string& call) const override {
       return builtin_.method(call);
     }
-    std::vector<std::string> method_names() const override { return builtin_.method_names(); }
     schemes::SchemeData scheme_data(const std::string& call) const override {
       return builtin_.scheme_data(call);
+    }
+    std::vector<std::string> method_names() const override { return builtin_.method_names(); }
+    schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+      return builtin_.equivalent_scheme(call);
     }
     analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
       return builtin_.oscillator_theory(call);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -22,15 +23,21 @@ class SeededCatalog final : public Catalog {
     const auto seed = seeds_.find(call);
     return seed != seeds_.end() ? seed->second() : builtin_.method(call);
   }
+  /// Of a seed with the name of a method of the catalogue: the coefficients of that method.
+  schemes::SchemeData scheme_data(const std::string& call) const override {
+    const std::vector<std::string> known = builtin_.method_names();
+    const bool is_new = seeds_.contains(call) && std::find(known.begin(), known.end(), call) == known.end();
+    return is_new ? schemes::SchemeData{} : builtin_.scheme_data(call);
+  }
   std::vector<std::string> method_names() const override {
     std::vector<std::string> names = builtin_.method_names();
     for (const auto& [name, make] : seeds_) names.push_back(name);
     return names;
   }
-  schemes::SchemeData scheme_data(const std::string& call) const override {
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
     const auto claimed = theory_.find(call);
-    if (claimed != theory_.end()) return builtin_.scheme_data(claimed->second);
-    return seeds_.contains(call) ? schemes::SchemeData{} : builtin_.scheme_data(call);
+    if (claimed != theory_.end()) return builtin_.equivalent_scheme(claimed->second);
+    return seeds_.contains(call) ? schemes::SchemeData{} : builtin_.equivalent_scheme(call);
   }
   analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
     const auto claimed = theory_.find(call);
