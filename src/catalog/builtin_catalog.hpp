@@ -1,6 +1,7 @@
 #pragma once
 
 #include "catalog/methods.hpp"
+#include "catalog/oscillator_theory.hpp"
 #include "catalog/problems.hpp"
 #include "study/catalog.hpp"
 
@@ -15,6 +16,12 @@ class BuiltinCatalog final : public study::Catalog {
     std::vector<std::string> names;
     for (const MethodEntry& entry : methods()) names.push_back(entry.name);
     return names;
+  }
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+    return catalog::equivalent_scheme(call);
+  }
+  analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
+    return catalog::oscillator_theory(call);
   }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     return find_problem(name).make(parameters);

@@ -20,6 +20,7 @@ const std::vector<ProblemEntry>& problems() {
   static const std::vector<ProblemEntry> list = {dahlquist_entry(),
                                                  dahlquist_complex_entry(),
                                                  rotation_entry(),
+                                                 moving_centre_entry(),
                                                  prothero_robinson_entry(),
                                                  harmonic_oscillator_entry(),
                                                  damped_oscillator_entry(),

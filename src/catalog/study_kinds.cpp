@@ -2,8 +2,11 @@
 
 #include "study/agreement.hpp"
 #include "study/convergence.hpp"
+#include "study/dissipation.hpp"
+#include "study/energy.hpp"
 #include "study/jacobian.hpp"
 #include "study/linear_solver.hpp"
+#include "study/propagation.hpp"
 #include "study/simulate.hpp"
 #include "study/stability.hpp"
 #include "study/stiffness.hpp"
@@ -16,9 +19,10 @@ namespace {
 
 /// Every kind but the one that is made of the others.
 std::vector<study::StudyKind> plain_kinds() {
-  return {study::convergence_kind(), study::agreement_kind(), study::linear_solver_kind(),
-          study::jacobian_kind(),    study::simulate_kind(),  study::work_precision_kind(),
-          study::stiffness_kind(),   study::stability_kind()};
+  return {study::convergence_kind(),   study::agreement_kind(),      study::stability_kind(),
+          study::stiffness_kind(),     study::work_precision_kind(), study::energy_kind(),
+          study::dissipation_kind(),   study::propagation_kind(),    study::jacobian_kind(),
+          study::linear_solver_kind(), study::simulate_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

@@ -25,6 +25,18 @@ struct PlanarLinear {
   }
 };
 
+struct MovingCentre {
+  Parameter radius, frequency;
+  template <class S>
+  void operator()(const S& t, std::span<const S> y, std::span<S> dydt) const {
+    using std::cos;
+    using std::sin;
+    const S angle = frequency.as<S>() * t;
+    dydt[0] = radius.as<S>() * sin(angle) - y[1];
+    dydt[1] = y[0] - radius.as<S>() * cos(angle);
+  }
+};
+
 struct ProtheroRobinson {
   Parameter lambda;
   template <class S>
@@ -108,6 +120,35 @@ Problem rotation(const ProblemParameters& given) {
   problem.exact = [](const Float128& t) { return std::vector<Float128>{cos(t), sin(t)}; };
   problem.invariants = {{"squared_radius", "1", [](double, ConstVectorRef y) { return y.squaredNorm(); }}};
   problem.stiffness = [radius = 1.0] { return radius; };
+  problem.parameters = parameters.text();
+  return problem;
+}
+
+ProblemEntry moving_centre_entry() {
+  return {"moving_centre", {{"radius", 0.8}, {"frequency", 0.4}}, moving_centre};
+}
+
+Problem moving_centre(const ProblemParameters& given) {
+  const ParameterSet parameters(moving_centre_entry(), given);
+  const Parameter radius = parameters["radius"], frequency = parameters["frequency"];
+  if (frequency.binary() == 1.0) parameters.reject("frequency", "another than 1, which is resonance");
+  Problem problem;
+  problem.name = "moving_centre";
+  problem.title = "Rotation about a moving centre";
+  problem.description =
+      "x1' = -(x2 - a sin W t), x2' = x1 - a cos W t, x(0) = (1, 0) on [0, 7.3]: circles about a centre that "
+      "moves "
+      "on a circle itself (non-autonomous). With z = x1 + i x2: z(t) = (1 - p) exp(i t) + p exp(i W t), "
+      "p = a/(1 - W). Stiffness: |+-i| = 1.";
+  problem.source = "Zachmann 2011, S14 (a vector field that changes with time)";
+  problem.ivp = {
+      std::make_shared<FunctorSystem<MovingCentre>>(2, MovingCentre{radius, frequency}), 0.0, 7.3, {}, {}};
+  set_initial_state(problem.ivp, {1, 0});
+  problem.exact = [radius, frequency](const Float128& t) {
+    const Float128 W = frequency.decimal(), p = radius.decimal() / (1 - W);
+    return std::vector<Float128>{(1 - p) * cos(t) + p * cos(W * t), (1 - p) * sin(t) + p * sin(W * t)};
+  };
+  problem.stiffness = [radius_of_spectrum = 1.0] { return radius_of_spectrum; };
   problem.parameters = parameters.text();
   return problem;
 }

@@ -17,6 +17,12 @@ ProblemEntry dahlquist_complex_entry();
 Problem rotation(const ProblemParameters& given = {});
 ProblemEntry rotation_entry();
 
+/// Rotation about a centre c(t) = a (cos Ωt, sin Ωt) that moves itself, ẋ = J (x − c(t)) with J = ((0, −1),
+/// (1, 0)): a vector field in the plane that changes with time [Zachmann 2011, S14]. Parameters `radius` a,
+/// `frequency` Ω ≠ 1.
+Problem moving_centre(const ProblemParameters& given = {});
+ProblemEntry moving_centre_entry();
+
 /// Prothero and Robinson's ẏ = λ(y − φ(t)) + φ'(t), φ = cos t; parameter `lambda` < 0. It shows order
 /// reduction.
 Problem prothero_robinson(const ProblemParameters& given = {});

@@ -68,6 +68,15 @@ Complex evaluate(const std::vector<Complex>& coefficients, Complex z) {
   return sum;
 }
 
+/// Coefficients of ρ − μσ by rising powers.
+std::vector<Complex> characteristic_polynomial(const MultistepFormula& formula, Complex mu) {
+  check(formula);
+  std::vector<Complex> difference = polynomial(formula.alpha);
+  const std::vector<Complex> sigma = polynomial(formula.beta);
+  for (std::size_t j = 0; j < difference.size(); ++j) difference[j] -= mu * sigma[j];
+  return difference;
+}
+
 bool root_condition(const Roots& values) {
   constexpr double circle = 1e-6;
   constexpr double apart = 1e-4;
@@ -104,11 +113,13 @@ bool is_zero_stable(const MultistepFormula& formula) {
   return root_condition(roots(polynomial(formula.alpha)));
 }
 
+std::vector<Complex> characteristic_roots(const MultistepFormula& formula, Complex mu) {
+  const Roots values = roots(characteristic_polynomial(formula, mu));
+  return {values.data(), values.data() + values.size()};
+}
+
 double amplification(const MultistepFormula& formula, double real, double imaginary) {
-  check(formula);
-  std::vector<Complex> difference = polynomial(formula.alpha);
-  const std::vector<Complex> sigma = polynomial(formula.beta);
-  for (std::size_t j = 0; j < difference.size(); ++j) difference[j] -= Complex(real, imaginary) * sigma[j];
+  const std::vector<Complex> difference = characteristic_polynomial(formula, {real, imaginary});
   if (difference.back() == Complex(0.0)) return std::numeric_limits<double>::infinity();
   return roots(difference).cwiseAbs().maxCoeff();
 }

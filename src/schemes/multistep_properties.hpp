@@ -1,5 +1,8 @@
 #pragma once
 
+#include <complex>
+#include <vector>
+
 #include "schemes/multistep_formula.hpp"
 
 namespace fw::schemes {
@@ -20,6 +23,11 @@ Rational error_constant(const MultistepFormula& formula);
 /// in double; one counts as lying on the circle within 1e-6, and as double if another one is nearer than
 /// 1e-4.
 bool is_zero_stable(const MultistepFormula& formula);
+
+/// The roots of ρ(ζ) − μ σ(ζ), by which the formula's solutions of y' = λy with hλ = μ grow per step; fewer
+/// than k where leading coefficients vanish.
+std::vector<std::complex<double>> characteristic_roots(const MultistepFormula& formula,
+                                                       std::complex<double> mu);
 
 /// The largest root of ρ(ζ) − μ σ(ζ) in modulus: the growth per step on y' = λy with hλ = μ; infinite where
 /// α_k = μ β_k.

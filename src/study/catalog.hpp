@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/oscillator_amplification.hpp"
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
 #include "schemes/scheme_data.hpp"
@@ -27,6 +28,13 @@ class Catalog {
 
   /// The names of all methods, in the order of the list.
   virtual std::vector<std::string> method_names() const = 0;
+
+  /// The coefficients of the method of a call, or of the scheme that it is on forces f(q) (`verlet` is
+  /// velocity Verlet); std::monostate where it is not given by coefficients.
+  virtual schemes::SchemeData equivalent_scheme(const std::string& call) const = 0;
+
+  /// What theory says of the method of a call on linear oscillators; empty where it says nothing.
+  virtual analysis::AmplificationFactors oscillator_theory(const std::string& call) const = 0;
 
   /// The problem of that name. Throws InputError for an unknown name, parameter or value.
   virtual Problem problem(const std::string& name, const ProblemParameters& parameters) const = 0;

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "study/frame_selector.hpp"
 #include "study/problem_spec.hpp"
+#include "study/step_construction.hpp"
 
 namespace fw::study {
 
@@ -71,7 +72,8 @@ std::vector<SummaryCell> summary_row(const std::string& problem, const std::stri
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
-                          const StepControl& control, std::uint64_t frames, const RunContext& context) {
+                          const StepControl& control, std::uint64_t frames, std::int64_t construction,
+                          const RunContext& context) {
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
   FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
@@ -85,11 +87,13 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
-  result.columns = {{"problem", "", std::vector<std::string>{entry.label}, {}, {}},
-                    {"method", "", std::vector<std::string>{call}, {}, {}},
-                    {"step", "s", std::vector<double>{step}, {}, {}},
-                    {"time", "s", columns.times(), {}, {}},
-                    {"state", "SI", columns.states(), {columns.times().size(), size}, {}}};
+  result.columns = {
+      {"problem", "", std::vector<std::string>{entry.label}, {}, {}},
+      {"method", "", std::vector<std::string>{call}, {}, {}},
+      {"step", "s", std::vector<double>{step}, {}, {}},
+      {"second_order", "1", std::vector<std::int64_t>{ivp.system->second_order() != nullptr ? 1 : 0}, {}, {}},
+      {"time", "s", columns.times(), {}, {}},
+      {"state", "SI", columns.states(), {columns.times().size(), size}, {}}};
   add_exact(entry, result);
   for (const Invariant& invariant : entry.problem.invariants) {
     std::vector<double> values;
@@ -99,6 +103,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     result.columns.push_back({"invariant_" + group_name(invariant.name), invariant.unit, values, {}, {}});
   }
+  add_step_construction(ivp, integrator, control, construction, result);
   double end_error = std::numeric_limits<double>::quiet_NaN();
   if (entry.problem.exact && solution.status.ok()) {
     const std::vector<Float128> exact = entry.problem.exact(ivp.t1);
@@ -112,33 +117,37 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   return result;
 }
 
-/// ẏ = f(t, y) on a grid: (t, y) for one unknown, (y₁, y₂) at t₀ for two.
+/// ẏ = f(t, y) on a grid: (t, y) for one unknown, (y₁, y₂) at each of `times` for two.
 struct FieldGrid {
   std::vector<double> lower, upper;
   std::vector<std::int64_t> counts;
+  std::vector<double> times;  ///< [s]
 };
 
 CaseResult sample_field(const StudyProblem& entry, const FieldGrid& grid) {
   const Ivp& ivp = entry.problem.ivp;
   const bool scalar = ivp.system->size() == 1;
+  const std::vector<double> field_times = scalar ? std::vector<double>{ivp.t0} : grid.times;
   std::vector<double> times, states, slopes;
   Vector y(ivp.system->size()), slope(ivp.system->size());
   const auto coordinate = [&](std::size_t axis, std::int64_t k) {
     return grid.lower[axis] + (grid.upper[axis] - grid.lower[axis]) * static_cast<double>(k) /
                                   static_cast<double>(grid.counts[axis] - 1);
   };
-  for (std::int64_t j = 0; j < grid.counts[1]; ++j) {
-    for (std::int64_t i = 0; i < grid.counts[0]; ++i) {
-      const double t = scalar ? coordinate(0, i) : ivp.t0;
-      if (scalar) {
-        y[0] = coordinate(1, j);
-      } else {
-        y << coordinate(0, i), coordinate(1, j);
+  for (const double field_time : field_times) {
+    for (std::int64_t j = 0; j < grid.counts[1]; ++j) {
+      for (std::int64_t i = 0; i < grid.counts[0]; ++i) {
+        const double t = scalar ? coordinate(0, i) : field_time;
+        if (scalar) {
+          y[0] = coordinate(1, j);
+        } else {
+          y << coordinate(0, i), coordinate(1, j);
+        }
+        ivp.system->rhs(t, y, slope);
+        times.push_back(t);
+        states.insert(states.end(), y.data(), y.data() + y.size());
+        slopes.insert(slopes.end(), slope.data(), slope.data() + slope.size());
       }
-      ivp.system->rhs(t, y, slope);
-      times.push_back(t);
-      states.insert(states.end(), y.data(), y.data() + y.size());
-      slopes.insert(slopes.end(), slope.data(), slope.data() + slope.size());
     }
   }
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
@@ -153,8 +162,14 @@ CaseResult sample_field(const StudyProblem& entry, const FieldGrid& grid) {
   return result;
 }
 
-FieldGrid read_field(const CheckedTable& table) {
-  FieldGrid grid{table.numbers("lower"), table.numbers("upper"), table.integers("counts", 2, 1000)};
+FieldGrid read_field(const CheckedTable& table, const Ivp& ivp) {
+  FieldGrid grid{table.numbers("lower"), table.numbers("upper"), table.integers("counts", 2, 1000), {ivp.t0}};
+  if (table.has("times")) {
+    grid.times = table.numbers("times");
+    if (grid.times.empty()) table.fail("times", "found an empty list, expected at least one time");
+    if (ivp.system->size() == 1)
+      table.fail("times", "found with one unknown, whose grid has the time as an axis");
+  }
   const auto check = [&](const char* key, std::size_t found) {
     if (found != 2) table.fail(key, fmt::format("found {} entries, expected 2", found));
   };
@@ -186,10 +201,16 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       "frames", std::min<std::int64_t>(all_frames, 101), 2, 10'000'000);
   const auto frames = static_cast<std::uint64_t>(quick ? quick_frames : all_frames);
 
+  const std::int64_t construction = spec.integer_or("construction_steps", 0, 0, 1000);
+
   std::shared_ptr<const StudyProblem> first;
   for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
     const auto problem = std::make_shared<const StudyProblem>(std::move(entry));
     if (!first) first = problem;
+    if (construction > 0 && problem->problem.ivp.system->size() != 1) {
+      spec.fail("construction_steps", fmt::format("problem \"{}\" has {} unknowns, expected 1",
+                                                  problem->label, problem->problem.ivp.system->size()));
+    }
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
@@ -199,12 +220,13 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       }
       const auto add = [&](const StepControl& control, const std::string& suffix,
                            const std::string& identity) {
-        plan.cases.push_back({.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
-                              .identity = fmt::format("simulate\n{}method = {}\nframes = {}\n{}",
-                                                      problem->identity, call, frames, identity),
-                              .run = [problem, call, integrator, control, frames](const RunContext& context) {
-                                return run_trajectory(*problem, call, *integrator, control, frames, context);
-                              }});
+        plan.cases.push_back(
+            {.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
+             .identity = fmt::format("simulate\n{}method = {}\nframes = {}\nconstruction = {}\n{}",
+                                     problem->identity, call, frames, construction, identity),
+             .run = [problem, call, integrator, control, frames, construction](const RunContext& context) {
+               return run_trajectory(*problem, call, *integrator, control, frames, construction, context);
+             }});
       };
       const bool by_tolerances =
           integrator->info().is_adaptive && (steps.empty() || !integrator->info().has_fixed_step);
@@ -229,7 +251,7 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
   }
   if (spec.has("vector_field")) {
     const CheckedTable table = spec.table("vector_field");
-    const FieldGrid grid = read_field(table);
+    const FieldGrid grid = read_field(table, first->problem.ivp);
     if (first->problem.ivp.system->size() > 2) {
       throw InputError(fmt::format("{}: the vector field of \"{}\" has {} components, expected 1 or 2",
                                    table.where(), first->label, first->problem.ivp.system->size()));

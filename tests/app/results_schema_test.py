@@ -187,11 +187,64 @@ lower = [-1.0, -1.0]
 upper = [1.0, 1.0]
 counts = [3, 4]
 """,
+    # with theory, modified energies and neither; free, with dampers; a run that explodes
+    "energy": """
+kind = "energy"
+title = "Energy"
+methods = ["velocity_verlet", "explicit_euler"]
+
+[energy]
+steps = [0.02, 0.01]
+step_count = 300
+bins = 10
+
+[[problem]]
+name = "harmonic_oscillator"
+
+[[problem]]
+name = "henon_heiles"
+
+[[problem]]
+scene = "SCENES/free_network.toml"
+t_end = 1.0
+
+[[problem]]
+scene = "SCENES/damped_network.toml"
+t_end = 1.0
+""",
+    # with and without coefficients
+    "dissipation": """
+kind = "dissipation"
+title = "Damping"
+methods = ["implicit_euler", "explicit_euler", "gsl:rk4"]
+
+[dissipation]
+count = 4
+""",
+    # explicit, implicit, without stages to predict from; a scene
+    "propagation": """
+kind = "propagation"
+title = "Propagation"
+methods = ["velocity_verlet", "implicit_euler", "adams_bashforth2"]
+
+[propagation]
+steps = [0.06]
+step_count = 20
+
+[[problem]]
+name = "linear_chain"
+parameters = { count = 21 }
+
+[[problem]]
+scene = "SCENES/resting_cloth.toml"
+t_end = 1.0
+""",
     "decay": """
 kind = "simulate"
 title = "One unknown"
 methods = ["rk4"]
 steps = [0.5]
+construction_steps = 2
 
 [[problem]]
 name = "dahlquist"
@@ -280,7 +333,8 @@ class ResultsSchema(unittest.TestCase):
         for name in (*STUDIES, *SIMULATED_SCENES):
             with h5py.File(self.folder / f"{name}.h5") as file:
                 file.visititems(lambda path, item: found.add(path) if isinstance(item, h5py.Dataset) else None)
-        for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness", "stability"):
+        for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness", "stability", "energy",
+                     "dissipation", "propagation"):
             section = DESCRIPTION.split(f"## Kind `{kind}`")[1].split("\n## ")[0]
             rows = [line for line in section.splitlines() if line.startswith("| `/")]
             self.assertGreater(len(rows), 15, kind)
@@ -289,8 +343,8 @@ class ResultsSchema(unittest.TestCase):
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
-        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories"), ("stability", "stability"),
-                           ("trajectory", "double_spring")):
+        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring"),
+                           ("stability", "stability"), ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")
             section, separator, after = section.partition("\n## ")
             for line in [line for line in section.splitlines() if line.startswith("| `/")]:
@@ -298,7 +352,7 @@ class ResultsSchema(unittest.TestCase):
                     document = before + f"## Kind `{kind}`" + section.replace(line + "\n", "", 1) + separator + after
                     if section.endswith(line):
                         document = document.replace(line, "", 1)
-                    code, text = self.check(self.folder / f"{name}.h5", description=document)
+                    code, text = self.check(*(self.folder / f"{each}.h5" for each in name.split()), description=document)
                     self.assertEqual(code, 1)
                     self.assertIn("is not described", text)
 

@@ -15,15 +15,21 @@ import h5py  # noqa: E402
 import matplotlib.colors as colors  # noqa: E402
 import numpy  # noqa: E402
 import plot_agreement  # noqa: E402
+import plot_construction  # noqa: E402
 import plot_convergence  # noqa: E402
+import plot_dissipation  # noqa: E402
+import plot_energy  # noqa: E402
 import plot_jacobian  # noqa: E402
 import plot_linear_solver  # noqa: E402
+import plot_oscillation  # noqa: E402
+import plot_propagation  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
 import plot_stability  # noqa: E402
 import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
+import plot_vector_field  # noqa: E402
 import plot_work_precision  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
@@ -283,6 +289,69 @@ class Stability(PlotTest):
         thresholds, laws = self.draw(plot_stability, self.path)[4:]
         self.assertEqual(texts_of_legend(thresholds.axes[0])[::2], ["theory h = 1/k", "theory h = 2/k"])
         self.assertIn("slope -1", [text.get_text() for text in laws.axes[0].texts])
+
+
+class LaterKinds(PlotTest):
+    """Energy, dissipation, propagation, and the further pictures of kind "simulate"."""
+
+    def make(self, kind):
+        path = self.folder / f"{kind}.h5"
+        synthetic_results.LATER[kind](path)
+        return path
+
+    def test_are_chosen_by_the_content_of_the_file(self):
+        for kind, figures in (("energy", 4), ("dissipation", 3), ("propagation", 4), ("vector_field", 1),
+                              ("oscillation", 1), ("construction", 1)):
+            with self.subTest(kind):
+                answer = self.script("plot_results.py", self.make(kind))
+                self.assertEqual(answer.returncode, 0, answer.stderr)
+                self.assertEqual(len(answer.stdout.splitlines()), figures)
+
+    def test_energy_is_drawn_as_a_factor_where_it_grows_and_as_a_change_elsewhere(self):
+        change, growth, laws, rounding = self.draw(plot_energy, self.make("energy"))
+        self.assertEqual([axes.get_ylabel() for axes in change.axes], ["E / E₀", "(E − E₀) / E₀"])
+        self.assertEqual(change.axes[0].get_yscale(), "log")
+        numpy.testing.assert_allclose(growth.axes[0].lines[2].get_ydata(), [0.04, 0.01])
+        self.assertEqual(laws.axes[0].get_xlabel(), "step h [s]")
+        numpy.testing.assert_allclose(rounding.axes[0].lines[0].get_ydata()[-1], 2e-16 * numpy.sqrt(101) / 2.5)
+
+    def test_damping_has_theory_as_lines_and_runs_as_markers(self):
+        errors, motion, radius = self.draw(plot_dissipation, self.make("dissipation"))
+        z = numpy.geomspace(0.05, 5, 25)
+        line, markers = errors.axes[0].lines[0], errors.axes[0].lines[2]
+        numpy.testing.assert_allclose(line.get_ydata(), 0.5 * z)
+        numpy.testing.assert_allclose(markers.get_ydata(), 0.5 * z[::2])
+        self.assertEqual(texts_of_legend(errors.axes[2])[:2], ["implicit_euler", "trapezoidal (no damping)"])
+        self.assertIn("20 steps per period", motion._suptitle.get_text())
+        self.assertEqual(radius.axes[0].get_ylabel(), "spectral radius ρ")
+
+    def test_a_front_is_white_where_nothing_has_arrived(self):
+        figures = self.draw(plot_propagation, self.make("propagation"))
+        image = figures[0].axes[0].images[0].get_array()  # distance × step
+        self.assertTrue(numpy.ma.getmaskarray(image)[5, 4])
+        self.assertFalse(numpy.ma.getmaskarray(image)[4, 4])
+        self.assertIn("1 springs per step", [text.get_text() for text in figures[0].axes[0].texts])
+        numpy.testing.assert_allclose(figures[0].axes[0].lines[1].get_ydata()[:3], [0, 0.5, 1.0])
+
+    def test_a_field_has_a_panel_per_time_with_the_way_so_far(self):
+        figure, = self.draw(plot_vector_field, self.make("vector_field"))
+        self.assertEqual([axes.get_title(loc="left") for axes in figure.axes], ["t = 0 s", "t = 2 s", "t = 4 s"])
+        self.assertEqual([axes.lines[0].get_xdata().size for axes in figure.axes], [1, 21, 41])
+
+    def test_a_motion_keeps_the_exact_amplitude_readable(self):
+        figure, = self.draw(plot_oscillation, self.make("oscillation"))
+        self.assertEqual(figure.axes[0].get_ylabel(), "position x [m]")
+        low, high = figure.axes[0].get_ylim()
+        self.assertLess(high, 4)
+        self.assertIn("h = 0.5 s\n(leaves the picture)", texts_of_legend(figure.axes[1]))
+
+    def test_the_tangent_touches_where_the_slope_is_that_of_the_field(self):
+        figure, = self.draw(plot_construction, self.make("construction"))
+        for axes in figure.axes:
+            dots = [line for line in axes.lines if line.get_marker() == "o"]
+            self.assertGreaterEqual(len(dots), 2, axes.get_title(loc="left"))
+            first = numpy.ravel(dots[0].get_xdata())[0]
+            self.assertEqual(first > 0, axes.get_title(loc="left").startswith("implicit_euler"))
 
 
 class Refusals(PlotTest):

@@ -240,6 +240,133 @@ def stability(path):
             put(summary, name, list(column), "" if isinstance(column[0], str) else "1")
 
 
+def energy(path):
+    """A single spring: one scheme that explodes, one with a modified energy."""
+    step, bins = numpy.array([0.2, 0.1]), 50
+    rows = []
+    with new_file(path, "energy", "Energy") as file:
+        for method, rate in (("explicit_euler", 2.0), ("velocity_verlet", 0.0)):
+            case = file.create_group(f"cases/spring-{method}")
+            time = numpy.linspace(0, 100, bins)[None, :] * numpy.ones((2, 1))
+            growth = numpy.expm1(0.5 * rate * step[:, None] ** 2 * time)
+            put(case, "step", step, "s")
+            put(case, "energy_start", [2.0, 2.0], "J").attrs["quantity"] = "energy"
+            put(case, "energy_scale", [2.5, 2.5], "J")
+            put(case, "end_time", [100.0, 100.0], "s")
+            put(case, "drift", rate * step, "J/s")
+            put(case, "drift_low", 0.9 * rate * step - 1e-9, "J/s")
+            put(case, "drift_high", 1.1 * rate * step + 1e-9, "J/s")
+            put(case, "oscillation", 0.1 * step ** 2, "J")
+            put(case, "growth", 0.5 * rate * step ** 2)
+            put(case, "predicted_growth", 0.5 * rate * step ** 2)
+            put(case, "bin_time", time, "s")
+            for name, shift in (("least", -0.01), ("mean", 0.0), ("largest", 0.01)):
+                put(case, f"change_{name}", 2 * growth + shift, "J")
+            if rate == 0.0:
+                put(case, "modified_least", -1e-16 * numpy.sqrt(1 + time), "J")
+                put(case, "modified_largest", 2e-16 * numpy.sqrt(1 + time), "J")
+            rows.append((f"spring-{method}", "spring", method, 0.2, "holds"))
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "problem", "method", "step", "verdict"), zip(*rows)):
+            put(summary, name, list(column))
+
+
+def dissipation(path):
+    """A scheme that damps, one that only has a wrong period."""
+    z = numpy.geomspace(0.05, 5, 25)
+    rows = []
+    with new_file(path, "dissipation", "Damping") as file:
+        for method, damping in (("implicit_euler", 0.5 * z), ("trapezoidal", 0 * z)):
+            case = file.create_group(f"cases/{method}")
+            put(case, "frequency_step", z)
+            for name, values in (("damping_ratio", damping), ("period_error", z ** 2 / 12),
+                                 ("spectral_radius", numpy.exp(-damping * z))):
+                put(case, name, values)
+                put(case, {"spectral_radius": "measured_radius"}.get(name, f"measured_{name}"), values)
+            time = numpy.linspace(0, 10, 101)
+            put(case, "motion_time", time, "s")
+            put(case, "motion_position", numpy.cos(time) * numpy.exp(-0.1 * time), "m")
+            put(case, "motion_exact", numpy.cos(time), "m")
+            rows.append((method, method, 20.0, damping[5], 0.01, "holds"))
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "method", "steps_per_period", "damping_ratio", "period_error", "verdict"),
+                                zip(*rows)):
+            put(summary, name, list(column))
+
+
+def propagation(path):
+    """A front of one spring per step, and one that is everywhere at once; two steps."""
+    masses, steps = 21, 12
+    distance = numpy.abs(numpy.arange(masses) - 10)
+    rows = []
+    with new_file(path, "propagation", "Propagation") as file:
+        for h in (0.1, 0.2):
+            for method, speed in (("velocity_verlet", 1), ("implicit_euler", 10)):
+                case = file.create_group(f"cases/chain-{method}-h{h}")
+                reach = numpy.minimum(speed * numpy.arange(steps + 1), 10)
+                put(case, "time", h * numpy.arange(steps + 1), "s")
+                put(case, "distance", distance)
+                put(case, "displacement", numpy.where(distance[None, :] <= reach[:, None], 0.1 ** distance, 0.0), "m")
+                put(case, "front_velocity", reach)
+                put(case, "front_wave", 5 * h * numpy.arange(steps + 1))
+                rows.append((f"chain-{method}-h{h}", "chain", method, h, 10, float(speed), speed, 5 * h, 5.0, 5.0, "holds"))
+        summary = file.create_group("summary")
+        names = ("case", "problem", "method", "step", "farthest", "springs_per_step", "first_step_velocity", "wave_springs_per_step",
+                 "wave_speed", "physical_wave_speed", "verdict")
+        for name, column in zip(names, zip(*rows)):
+            put(summary, name, list(column))
+
+
+def vector_field(path):
+    """A field that turns with time, at three times."""
+    simulate(path, "A field that changes with time", "turning", lambda t, y: numpy.array([-y[1], y[0]]),
+             [1.0, 0.0], lambda t: numpy.stack([numpy.cos(t), numpy.sin(t)], axis=1), [0.1], 4.0,
+             [numpy.linspace(-2, 2, 9)] * 2)
+    with h5py.File(path, "r+") as file:
+        field = file["cases/vector_field"]
+        arrays = {name: field[name][()] for name in ("field_t", "field_y", "field_dydt")}
+        for name, array in arrays.items():
+            del field[name]
+            put(field, name, numpy.concatenate([array + t * (name == "field_t") for t in (0.0, 2.0, 4.0)]))
+
+
+def oscillation(path):
+    """A mass on a spring: position and velocity, exploding at the larger step."""
+    simulate(path, "A single spring", "spring", lambda t, y: numpy.array([y[1], -y[0]]), [1.0, 0.0],
+             lambda t: numpy.stack([numpy.cos(t), -numpy.sin(t)], axis=1), [0.5, 0.05], 12.0,
+             [numpy.linspace(-3, 3, 9)] * 2)
+    with h5py.File(path, "r+") as file:
+        del file["cases/vector_field"]
+        for case in file["cases"].values():
+            put(case, "second_order", [1])
+
+
+def construction(path):
+    """Two steps of each Euler scheme on x' = -x."""
+    slope_field(path)
+    with h5py.File(path, "r+") as file:
+        for name, case in file["cases"].items():
+            if name == "vector_field":
+                continue
+            time, state = case["time"][:3], case["state"][:3, 0]
+            put(case, "construction_start_time", time[:-1], "s")
+            put(case, "construction_end_time", time[1:], "s")
+            put(case, "construction_start", state[:-1])
+            put(case, "construction_end", state[1:])
+            put(case, "construction_slope", numpy.diff(state) / numpy.diff(time), "SI/s")
+            put(case, "construction_start_slope", -state[:-1], "SI/s")
+            put(case, "construction_end_slope", -state[1:], "SI/s")
+            times = numpy.linspace(time[:-1], time[1:], 9, axis=-1)[:, None, :] * numpy.ones((1, 2, 1))
+            through = numpy.stack([time[:-1], time[1:]], axis=1)
+            values = numpy.stack([state[:-1], state[1:]], axis=1)
+            put(case, "construction_flow_time", times, "s")
+            put(case, "construction_flow", values[:, :, None] * numpy.exp(through[:, :, None] - times))
+
+
+#: Kinds of pictures that come as several figures, or are chosen by what a file of kind "simulate" holds.
+LATER = {"energy": energy, "dissipation": dissipation, "propagation": propagation, "vector_field": vector_field,
+         "oscillation": oscillation, "construction": construction}
+
 def work_precision(path, factorisations=40):
     """Two ladders on one problem: an explicit method of order 4 on the front, an implicit one of order 2 above it."""
     work = numpy.array([100, 200, 400, 800])
@@ -394,6 +521,8 @@ if __name__ == "__main__":
         write(folder / f"{name}.h5")
     linear_solver(folder / "linear_solver.h5")
     stability(folder / "stability.h5")
+    for name, write in LATER.items():
+        write(folder / f"{name}.h5")
     work_precision(folder / "work_precision.h5")
     stiffness(folder / "stiffness.h5")
     jacobian(folder / "jacobian.h5")

@@ -30,6 +30,12 @@ class WrongProblems final : public Catalog {
     return builtin_.scheme_data(call);
   }
   std::vector<std::string> method_names() const override { return builtin_.method_names(); }
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+    return builtin_.equivalent_scheme(call);
+  }
+  analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
+    return builtin_.oscillator_theory(call);
+  }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     Problem problem = builtin_.problem(name, parameters);
     problem.ivp.system = std::make_shared<AlteredSystem>(problem.ivp.system, alteration_);
@@ -124,6 +130,12 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
       return builtin_.scheme_data(call);
     }
     std::vector<std::string> method_names() const override { return builtin_.method_names(); }
+    schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+      return builtin_.equivalent_scheme(call);
+    }
+    analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
+      return builtin_.oscillator_theory(call);
+    }
     Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
       Problem problem = builtin_.problem(name, parameters);
       // The pattern of another network: the force of the cloth, the pattern of a chain.

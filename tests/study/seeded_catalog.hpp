@@ -16,7 +16,9 @@ using Seeds = std::map<std::string, std::function<std::unique_ptr<Integrator>()>
 /// The built-in catalogue and schemes with seeded bugs.
 class SeededCatalog final : public Catalog {
  public:
-  explicit SeededCatalog(Seeds seeds) : seeds_(std::move(seeds)) {}
+  /// `theory` names for a seeded scheme the method whose theory it claims.
+  explicit SeededCatalog(Seeds seeds, std::map<std::string, std::string> theory = {})
+      : seeds_(std::move(seeds)), theory_(std::move(theory)) {}
   std::unique_ptr<Integrator> method(const std::string& call) const override {
     const auto seed = seeds_.find(call);
     return seed != seeds_.end() ? seed->second() : builtin_.method(call);
@@ -32,6 +34,17 @@ class SeededCatalog final : public Catalog {
     for (const auto& [name, make] : seeds_) names.push_back(name);
     return names;
   }
+  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
+    const auto claimed = theory_.find(call);
+    if (claimed != theory_.end()) return builtin_.equivalent_scheme(claimed->second);
+    return seeds_.contains(call) ? schemes::SchemeData{} : builtin_.equivalent_scheme(call);
+  }
+  analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
+    const auto claimed = theory_.find(call);
+    if (claimed != theory_.end()) return builtin_.oscillator_theory(claimed->second);
+    if (seeds_.contains(call)) return {};
+    return builtin_.oscillator_theory(call);
+  }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     return builtin_.problem(name, parameters);
   }
@@ -39,6 +52,7 @@ class SeededCatalog final : public Catalog {
  private:
   catalog::BuiltinCatalog builtin_;
   Seeds seeds_;
+  std::map<std::string, std::string> theory_;
 };
 
 }  // namespace fw::study

@@ -1,0 +1,178 @@
+#include "study/energy.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "seeded_catalog.hpp"
+#include "seeded_schemes.hpp"
+#include "study_of_text.hpp"
+
+namespace fw::study {
+namespace {
+
+using testing::HasSubstr;
+
+std::string spec(const std::string& methods, const std::string& keys, const std::string& problem) {
+  return "kind = \"energy\"\ntitle = \"test\"\nmethods = [" + methods + "]\n[energy]\nbins = 40\n" + keys +
+         "[[problem]]\n" + problem;
+}
+
+const std::string oscillator = "name = \"harmonic_oscillator\"\n";
+const std::string chain = "name = \"linear_chain\"\n";
+const std::string henon_heiles = "name = \"henon_heiles\"\n";
+const std::string damped = "scene = \"../scenes/damped_network.toml\"\nt_end = 0.8\n";
+const std::string free_network = "scene = \"../scenes/free_network.toml\"\nt_end = 10.0\n";
+
+TEST(Energy, OfASingleSpringGrowsAsTheStabilityFunctionSays) {
+  const StudyResult result = run_study(
+      spec("\"explicit_euler\", \"midpoint\", \"rk4\", \"implicit_euler\", \"bdf2\", \"trapezoidal\", "
+           "\"newmark[beta=0.3,gamma=0.6]\", \"symplectic_euler\"",
+           "steps = [0.1, 0.03]\nstep_count = 4000\n", oscillator),
+      SeededCatalog({}));
+  for (const CaseResult& entry : result.cases)
+    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
+  const double z = 0.1 * std::sqrt(3.5);
+  EXPECT_NEAR(figure(result.cases[0], "growth"), std::sqrt(1.0 + z * z) - 1.0, 1e-10);
+  EXPECT_NEAR(figure(result.cases[2], "growth"),
+              std::sqrt(1.0 - std::pow(z, 6) / 72.0 + std::pow(z, 8) / 576.0) - 1.0, 1e-13);
+}
+
+TEST(Energy, OfALinearChainIsModifiedAndKeptToRounding) {
+  const StudyResult result = run_study(spec("\"velocity_verlet\", \"verlet\", \"symplectic_euler\"",
+                                            "steps = [0.02, 0.01]\nstep_count = 20000\n", chain),
+                                       SeededCatalog({}));
+  for (const CaseResult& entry : result.cases) {
+    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
+    EXPECT_LT(figure(entry, "modified_change"), 1e-12);
+    EXPECT_GT(figure(entry, "relative_oscillation"), 1e-4) << "the energy itself is not kept";
+  }
+  EXPECT_NEAR(figure(result.cases[0], "oscillation_exponent"), 2.0, 0.2);
+  EXPECT_NEAR(figure(result.cases[2], "oscillation_exponent"), 1.0, 0.2);
+}
+
+TEST(Energy, DriftsForOtherSchemesOnly) {
+  const StudyResult result = run_study(spec("\"velocity_verlet\", \"forest_ruth\", \"rk4\"",
+                                            "steps = [0.4, 0.2, 0.1]\nstep_count = 20000\n", henon_heiles),
+                                       SeededCatalog({}));
+  for (const CaseResult& entry : result.cases)
+    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
+  EXPECT_LT(figure(result.cases[0], "drift_over_oscillation"), 0.1);
+  EXPECT_GT(figure(result.cases[2], "drift_over_oscillation"), 1.0);
+  EXPECT_NEAR(figure(result.cases[2], "drift_exponent"), 5.0, 0.3);
+}
+
+TEST(Energy, ThatIsLostIsTheWorkOfTheDampers) {
+  const StudyResult result =
+      run_study(spec("\"explicit_euler\", \"heun\", \"rk4\", \"velocity_verlet\", \"implicit_midpoint\"",
+                     "steps = [0.002, 0.001, 0.0005]\n", damped),
+                SeededCatalog({}));
+  const double expected[] = {1.0, 2.0, 4.0, 2.0, 2.0};
+  for (std::size_t k = 0; k < result.cases.size(); ++k) {
+    const CaseResult& entry = result.cases[k];
+    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
+    EXPECT_GE(figure(entry, "balance_exponent"), expected[k] - 0.2) << entry.id;
+    EXPECT_LT(std::abs(figure(entry, "balance")), k == 0 ? 0.3 : 0.02) << entry.id;
+    EXPECT_GT(std::abs(figure(entry, "balance")), 1e-12) << entry.id;
+  }
+}
+
+TEST(Energy, MomentaOfAFreeNetworkChangeByRoundingOnly) {
+  const StudyResult result = run_study(spec("\"velocity_verlet\", \"rk4\", \"implicit_midpoint\"",
+                                            "steps = [0.01]\nstep_count = 30000\n", free_network),
+                                       SeededCatalog({}));
+  for (const CaseResult& entry : result.cases) {
+    EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
+    EXPECT_LT(figure(entry, "momentum_change"), 1e-12) << entry.id;
+  }
+  EXPECT_LT(figure(result.cases[0], "angular_momentum_change"), 1e-12);
+  EXPECT_GT(figure(result.cases[1], "angular_momentum_change"), 1e-10) << "Runge-Kutta 4 does not keep it";
+}
+
+Vector acceleration(const SecondOrderSystem& system, double t, const Vector& q, const Vector& v) {
+  Vector f(q.size());
+  system.force(t, q, v, f);
+  return f.cwiseQuotient(system.mass());
+}
+
+/// Schemes that claim to be what they are not.
+Seeds seeded_bugs() {
+  Seeds seeds;
+  seeds["lossy_verlet"] = [] {
+    auto scheme = seeded_scheme("velocity_verlet", 2,
+                                [](auto& s, double t, double h, VectorRef q, VectorRef v, Vector&) {
+                                  v += 0.5 * h * acceleration(s, t, q, v);
+                                  q += h * v;
+                                  v += 0.5 * h * acceleration(s, t + h, q, v);
+                                  v *= 1.0 - 1e-9;  // friction in the last digits
+                                });
+    return scheme;
+  };
+  seeds["one_sided_spring"] = [] {
+    return seeded_scheme("one_sided_spring", 1,
+                         [](auto& s, double t, double h, VectorRef q, VectorRef v, Vector&) {
+                           Vector a = acceleration(s, t, q, v);
+                           a[0] *= 1.0 + 1e-9;  // action is not reaction
+                           v += h * a;
+                           q += h * v;
+                         });
+  };
+  seeds["damper_at_the_old_velocity"] = [] {
+    return seeded_scheme("damper_at_the_old_velocity", 2,
+                         [](auto& s, double t, double h, VectorRef q, VectorRef v, Vector&) {
+                           const Vector old = v;
+                           v += 0.5 * h * acceleration(s, t, q, old);
+                           q += h * v;
+                           v += 0.5 * h * acceleration(s, t + h, q, old);
+                         });
+  };
+  return seeds;
+}
+
+TEST(Energy, CatchesFrictionInTheLastDigits) {
+  const SeededCatalog catalog(seeded_bugs(), {{"lossy_verlet", "velocity_verlet"}});
+  for (const std::string& problem : {oscillator, chain}) {
+    const StudyResult result =
+        run_study(spec("\"lossy_verlet\"", "steps = [0.1]\nstep_count = 20000\n", problem), catalog);
+    EXPECT_EQ(result.cases.front().verdict, Verdict::fails) << result.cases.front().reason;
+    EXPECT_THAT(result.cases.front().reason, HasSubstr("FAILS: modified energy"));
+  }
+}
+
+TEST(Energy, CatchesTheGrowthOfAnotherScheme) {
+  const SeededCatalog catalog(seeded_bugs(), {{"one_sided_spring", "explicit_euler"}});
+  const StudyResult result =
+      run_study(spec("\"one_sided_spring\"", "steps = [0.1]\nstep_count = 2000\n", oscillator), catalog);
+  EXPECT_EQ(result.cases.front().verdict, Verdict::fails) << result.cases.front().reason;
+  EXPECT_THAT(result.cases.front().reason, HasSubstr("FAILS: amplitude grows"));
+}
+
+TEST(Energy, CatchesASpringThatPullsOneEndHarder) {
+  const StudyResult result =
+      run_study(spec("\"one_sided_spring\"", "steps = [0.01]\n", free_network), SeededCatalog(seeded_bugs()));
+  EXPECT_EQ(result.cases.front().verdict, Verdict::fails) << result.cases.front().reason;
+  EXPECT_THAT(result.cases.front().reason, HasSubstr("FAILS: linear momentum"));
+}
+
+TEST(Energy, CatchesADamperThatLagsBehind) {
+  const StudyResult result =
+      run_study(spec("\"damper_at_the_old_velocity\"", "steps = [0.002, 0.001, 0.0005]\n", damped),
+                SeededCatalog(seeded_bugs()));
+  EXPECT_EQ(result.cases.front().verdict, Verdict::fails) << result.cases.front().reason;
+  EXPECT_THAT(result.cases.front().reason, HasSubstr("at least h^2 is predicted"));
+}
+
+TEST(Energy, RefusesBadInputBeforeAnythingRuns) {
+  const SeededCatalog catalog({});
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "steps = [0.1, 0.2]\n", oscillator), catalog),
+              HasSubstr("expected less than the step before"));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "steps = [0.1]\n", "name = \"dahlquist\"\n"), catalog),
+              HasSubstr("has neither an energy nor another invariant"));
+  EXPECT_THAT(refusal_of(spec("\"gsl:msbdf\"", "steps = [0.1]\n", oscillator), catalog),
+              HasSubstr("fixed step"));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "steps = [0.7]\n", oscillator), catalog), HasSubstr("steps[0]"));
+}
+
+}  // namespace
+}  // namespace fw::study
