@@ -277,7 +277,8 @@ void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, P
           {.id = group_name(problem->entry.label + "-" + call),
            .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" + settings.text(),
            .run = [problem, call, integrator, theory = catalog.oscillator_theory(call),
-                   has_coefficients = !std::holds_alternative<std::monostate>(catalog.equivalent_scheme(call)),
+                   has_coefficients =
+                       !std::holds_alternative<std::monostate>(catalog.equivalent_scheme(call)),
                    settings](const RunContext& context) {
              return EnergyCase(*problem, call, *integrator, theory, has_coefficients, settings, context)
                  .run();
