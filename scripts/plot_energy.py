@@ -47,10 +47,7 @@ def draw_change(result, problem, members):
             panel.set_yscale("log")
         quantity = case["energy_start"].attrs.get("quantity", "energy")
         name = {"energy": "E"}.get(quantity, quantity)
-        if index % columns == 0:
-            panel.set_ylabel(f"{name} / {name}₀" if grows else f"({name} − {name}₀) / {name}₀")
-        elif grows:
-            panel.set_ylabel(f"{name} / {name}₀")
+        panel.set_ylabel(f"{name} / {name}₀" if grows else f"({name} − {name}₀) / {name}₀")
         if index + columns >= len(members):
             panel.set_xlabel(label("time t", result.unit("bin_time", case)))
         panel.set_title(row["method"], loc="left", fontsize=11)
