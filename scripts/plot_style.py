@@ -84,18 +84,18 @@ def new_figure(result, width, height, rows=1, columns=1, **options):
     return figure, axes
 
 
-def save(figures, result, directory):
-    """Writes each figure as PNG and PDF, named after the result file, and returns the PNGs' paths."""
+def save(figures, result, directory, formats=("png", "pdf")):
+    """Writes each figure in these formats, named after the result file, and returns the paths of the first format."""
     written = []
     for index, figure in enumerate(figures, start=1):
         stem = result.path.stem if len(figures) == 1 else f"{result.path.stem}-{index}"
-        for extension in ("png", "pdf"):
+        for extension in formats:
             path = directory / f"{stem}.{extension}"
             # The picture depends on the result file alone: no time of drawing in it.
             options = {"metadata": {"CreationDate": None}} if extension == "pdf" else {}
             figure.savefig(path.with_name("." + path.name), format=extension, **options)
             os.replace(path.with_name("." + path.name), path)
-        written.append(directory / f"{stem}.png")
+        written.append(directory / f"{stem}.{formats[0]}")
         plt.close(figure)
     return written
 
@@ -106,7 +106,11 @@ def main(description, choose_drawing, arguments=None):
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DIR", help="default: beside each file")
+    parser.add_argument("--formats", default="png,pdf", metavar="A,B", help="png, pdf, svg; default: png,pdf")
     options = parser.parse_args(arguments)
+    formats = options.formats.split(",")
+    if not set(formats) <= {"png", "pdf", "svg"}:
+        parser.error(f'--formats: found "{options.formats}", expected some of png, pdf, svg')
     for path in options.files:
         try:
             with ResultFile(path) as result:
@@ -116,7 +120,7 @@ def main(description, choose_drawing, arguments=None):
                     continue
                 directory = options.output or path.parent
                 directory.mkdir(parents=True, exist_ok=True)
-                for written in save(draw(result), result, directory):
+                for written in save(draw(result), result, directory, formats):
                     print(written)
         except ResultError as error:
             print(error, file=sys.stderr)
