@@ -21,6 +21,12 @@ def values(result, case, name):
     return numpy.atleast_1d(numpy.asarray(result.values(name, case), float))
 
 
+def explodes(result, case):
+    """Of each run, whether its energy has grown beyond a thousandfold: drift and oscillation then say nothing."""
+    scale, start = values(result, case, "energy_scale"), numpy.abs(values(result, case, "energy_start"))
+    return scale > 1e3 * numpy.where(start > 0, start, scale)
+
+
 def draw_change(result, problem, members):
     """A panel per method: the relative change of the energy in bins, one colour per step."""
     columns = min(3, len(members))
@@ -46,8 +52,11 @@ def draw_change(result, problem, members):
         if grows:
             panel.set_yscale("log")
         quantity = case["energy_start"].attrs.get("quantity", "energy")
-        name = {"energy": "E"}.get(quantity, quantity)
-        panel.set_ylabel(f"{name} / {name}₀" if grows else f"({name} − {name}₀) / {name}₀")
+        if quantity == "energy":
+            panel.set_ylabel("E / E₀" if grows else "(E − E₀) / E₀")
+        else:
+            name = quantity.replace("_", " ")
+            panel.set_ylabel(f"{name} / start" if grows else f"change of {name} / start", fontsize=10)
         if index + columns >= len(members):
             panel.set_xlabel(label("time t", result.unit("bin_time", case)))
         panel.set_title(row["method"], loc="left", fontsize=11)
@@ -97,17 +106,20 @@ def draw_laws(result, problem, members):
                            markevery=max(1, time.shape[1] // 8), **look(index))
             del work
         else:
+            kept = ~explodes(result, case)
             duration = values(result, case, "end_time")
             drift = numpy.abs(values(result, case, "drift")) * duration / scale
             interval = numpy.maximum(numpy.abs(values(result, case, "drift_low")),
                                      numpy.abs(values(result, case, "drift_high"))) * duration / scale
             clear = values(result, case, "drift_low") * values(result, case, "drift_high") > 0
             colour = look(index)["color"]
-            good = numpy.isfinite(interval) & (interval > 0)
+            clear &= kept
+            good = numpy.isfinite(interval) & (interval > 0) & kept
             line_over_steps(left, steps[clear], drift[clear], index, row["method"])
             left.loglog(steps[good & ~clear], interval[good & ~clear], linestyle="none", marker=look(index)["marker"],
                         markerfacecolor="none", color=colour)
-            line_over_steps(right, steps, values(result, case, "oscillation") / scale, index, row["method"])
+            line_over_steps(right, steps[kept], values(result, case, "oscillation")[kept] / scale[kept], index,
+                            row["method"])
     if damped:
         left.set_title("energy lost − work of the dampers, at the end", loc="left", fontsize=11.5)
         right.set_title("the same along the run with the finest step", loc="left", fontsize=11.5)
@@ -115,7 +127,7 @@ def draw_laws(result, problem, members):
         right.set_xlabel("time t [s]")
     else:
         left.set_title("drift over the run (open: within its interval of zero)", loc="left", fontsize=11.5)
-        right.set_title("oscillation", loc="left", fontsize=11.5)
+        right.set_title("oscillation (without runs that explode)", loc="left", fontsize=11.5)
         left.set_ylabel("|drift| · duration / E")
         right.set_ylabel("amplitude / E")
         right.set_xlabel("step h [s]")
@@ -173,6 +185,7 @@ def draw_rounding(result, problem, members):
     figure, axes = new_figure(result, 6.2 * len(present) + 2.6, 5.2, 1, len(present) + 1,
                               gridspec_kw={"width_ratios": [1] * len(present) + [0.5]})
     for panel, (name, title, scale_name) in zip(axes[0], present):
+        lowest, highest = numpy.inf, 0.0  # of the runs that do not explode; the others leave the picture
         for index, (row, case) in enumerate(members):
             if name not in case:
                 continue
@@ -184,8 +197,13 @@ def draw_rounding(result, problem, members):
                                     numpy.abs(values(result, case, "modified_least").reshape(steps.size, -1)[0]))
                 change = change / values(result, case, scale_name)[0]
             good = change > 0
+            if good.any() and not explodes(result, case)[0]:
+                lowest, highest = min(lowest, change[good].min()), max(highest, change[good].max())
             panel.loglog(time[good], change[good], linewidth=1.2, markevery=max(1, good.sum() // 8), **look(index))
         low, high = panel.get_ylim()
+        if highest > 0:
+            low, high = max(low, lowest / 10), min(high, 1e3 * highest)
+            panel.set_ylim(low, high)
         time = time[time > 0]
         walk = numpy.sqrt(low * high) * numpy.sqrt(time / numpy.sqrt(time[0] * time[-1]))
         panel.loglog(time, walk, linestyle=(0, (5, 3)), color=QUIET, linewidth=1.0)
