@@ -270,7 +270,8 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
   spec.strings_or("quantities", {});  // what the plot shows
   const CheckedTable study = spec.table("study");
   study.string_or("title", plan.title);
-  if (study.has("seed"))
+  // The resolved specification has it in both places.
+  if (study.has("seed") && study.integer("seed") != plan.seed)
     study.fail("seed", "expected at the top of the file, where it counts for every point");
   study.integer_or("seed", plan.seed);
   accept_everything(study);
