@@ -98,8 +98,9 @@ std::vector<std::string> read_scenes(const CheckedTable& section, const std::vec
 Parameter read_parameter(const CheckedTable& section) {
   Parameter parameter;
   parameter.path = section.string("path");
-  const std::string last = parameter.path.substr(parameter.path.find_last_of('.') + 1);
-  parameter.name = section.string_or("name", last);
+  std::string last = parameter.path.substr(parameter.path.find_last_of('.') + 1);
+  last.erase(std::min(last.find('['), last.size()));
+  parameter.name = section.string_or("name", last.empty() ? "value" : last);
   parameter.unit = section.string_or("unit", "1");
   if (section.has("values") && holds_strings(section)) {
     for (const std::string& text : section.strings("values")) parameter.values.emplace_back(text);

@@ -101,6 +101,12 @@ TEST(Sweep, TakesGeometricSequencesAndThinsThemOutWhenQuick) {
                                          HasSubstr("stiffness=100-")));
 }
 
+TEST(Sweep, NamesAnEntryOfAListByItsKey) {
+  const Plan plan = plan_of(head + "[[parameter]]\npath = 'steps[0]'\nvalues = [0.1, 0.2]\n" + inner);
+  EXPECT_THAT(ids_of(plan), ElementsAre("steps=0.1-harmonic_oscillator-rk4-h0.1",
+                                        "steps=0.2-harmonic_oscillator-rk4-h0.2"));
+}
+
 TEST(Sweep, RefusesMistakesOfItsOwnAndOfTheInnerStudy) {
   const auto refuses = [](const std::string& text, const std::string& why) {
     EXPECT_THAT([&] { plan_of(text); }, ThrowsMessage<InputError>(HasSubstr(why))) << text;
