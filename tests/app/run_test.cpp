@@ -225,6 +225,26 @@ TEST_F(Run, ReportsWhatDiffersInARepetition) {
   EXPECT_EQ(count(result.out, "differ, by at most"), 1U) << result.out;
 }
 
+TEST_F(Run, RepeatsFromNothingEveryTime) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(count(run(scratch_.path(), {"run", "r/s.h5"}).out, "(kept)"), 0U);
+}
+
+TEST_F(Run, RefusesToRepeatADamagedFileOrToShrinkIt) {
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  ASSERT_EQ(run_study("r").exit_code, 0);
+  EXPECT_THAT(run(scratch_.path(), {"run", "r/s.h5", "--quick"}).err, HasSubstr("expected no --quick"));
+  inspect(
+      "p = f.filename\nf.close()\ng.close()\nf = h5py.File(p, 'r+')\n"
+      "f.attrs['spec'] = f.attrs['spec'].replace('levels = 6', 'levels = 7')\nf.close()\n",
+      {file("r/s.h5")});
+  const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("does not match \"spec_sha256\""));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "r" / "s.repeated.h5"));
+}
+
 TEST_F(Run, RefusesToRepeatATrajectory) {
   write_bytes(scratch_ / "scene.toml",
               "[particles]\nposition = [[0,0,0], [1.2,0,0]]\nmass = 1\nfixed = [0]\n"
