@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "app/commands.hpp"
@@ -27,7 +28,7 @@ struct RunArguments {
   std::vector<std::string> studies;
   std::string directory = "results";
   int jobs = 1;
-  double time_limit = 0.0;
+  std::optional<double> time_limit;
   bool quick = false, force = false, directory_given = false;
 };
 
@@ -56,16 +57,30 @@ bool is_result_file(const std::filesystem::path& path) {
 /// The study that made a result file; its own directory receives the repetition unless another one was named.
 PlannedStudy read_result_file(const std::filesystem::path& path, const RunArguments& arguments,
                               const catalog::BuiltinCatalog& catalog) {
+  if (arguments.quick) {
+    throw InputError(
+        fmt::format("{}: a result file is repeated as it was made, expected no --quick", path.string()));
+  }
   const store::StudyFile file = store::read_study(path);
+  if (file.result.spec.empty() ||
+      sha256_hex(file.result.spec) != store::text_of(file.attributes, "spec_sha256")) {
+    throw InputError(fmt::format("\"{}\" is damaged: its attribute \"spec\" does not match \"spec_sha256\"",
+                                 path.string()));
+  }
   const CheckedTable spec =
       CheckedTable::parse_text(file.result.spec, fmt::format("{} (spec)", path.string()));
   const std::filesystem::path directory =
       arguments.directory_given ? std::filesystem::path(arguments.directory) : path.parent_path();
-  return {
-      .source = path.string(),
-      .output = directory / path.stem().concat(".repeated.h5"),
-      .plan = study::read_plan(spec, catalog::study_kinds(), catalog, file.result.quick || arguments.quick),
-      .repeats = true};
+  PlannedStudy study{.source = path.string(),
+                     .output = directory / path.stem().concat(".repeated.h5"),
+                     .plan = study::read_plan(spec, catalog::study_kinds(), catalog, file.result.quick),
+                     .repeats = true};
+  if (study.plan.kind != file.result.kind) {
+    throw InputError(
+        fmt::format("\"{}\" is damaged: its kind is \"{}\", that of its attribute \"spec\" is \"{}\"",
+                    path.string(), file.result.kind, study.plan.kind));
+  }
+  return study;
 }
 
 /// Reads every study before the first one runs, so that a mistake in the last is found at once.
@@ -137,8 +152,9 @@ bool report_differences(const PlannedStudy& planned) {
 int run(const RunArguments& arguments, const std::string& command_line) {
   if (arguments.jobs < 1)
     throw InputError(fmt::format("--jobs: found {}, expected at least 1", arguments.jobs));
-  if (!(arguments.time_limit >= 0.0))
-    throw InputError(fmt::format("--time-limit: found {}, expected at least 0", arguments.time_limit));
+  if (arguments.time_limit && !(*arguments.time_limit >= 0.0)) {
+    throw InputError(fmt::format("--time-limit: found {}, expected at least 0", *arguments.time_limit));
+  }
   const std::vector<PlannedStudy> studies = read_studies(arguments);
   make_directories(studies);
   for (const PlannedStudy& planned : studies) store::check_writable_target(planned.output);
@@ -190,7 +206,7 @@ void add_run_command(CLI::App& app, Action& action, const std::string& command_l
       command->add_option("-o,--output", arguments->directory, "Directory for result files")
           ->capture_default_str()
           ->type_name("DIR");
-  command->add_option("--time-limit", arguments->time_limit, "Ends a case that runs longer [s]")
+  command->add_option("--time-limit", arguments->time_limit, "Ends a case that runs longer [s]; 0: never")
       ->type_name("S");
   command
       ->add_option("--jobs", arguments->jobs,

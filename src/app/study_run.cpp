@@ -36,8 +36,10 @@ void count(const study::CaseResult& result, Tally& tally) {
 
 Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
                 const std::atomic<bool>& interrupted) {
-  store::StudyStore store(planned.output,
-                          run.force ? store::StudyStore::Earlier::forget : store::StudyStore::Earlier::reuse);
+  using Earlier = store::StudyStore::Earlier;
+  store::StudyStore store(planned.output, run.force         ? Earlier::forget
+                                          : planned.repeats ? Earlier::unfinished
+                                                            : Earlier::reuse);
   fmt::print("{} ({} cases)\n", planned.plan.title, planned.plan.cases.size());
   std::fflush(stdout);
   ProgressBar bar("cases");

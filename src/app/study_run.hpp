@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct StudyRunOptions {
   std::string command_line;
   std::string program;  ///< identity of the executable
   int jobs = 1;
-  double time_limit = 0.0;  ///< [s] of one case; 0: the study's own
+  std::optional<double> time_limit{};  ///< [s] of one case; absent: the study's own
   bool force = false;
 };
 

@@ -83,6 +83,9 @@ void set_at(toml::node* place, const std::vector<Step>& steps, const std::string
     if (is_last) {
       table->insert_or_assign(key, value);
     } else {
+      if (!table->contains(key) && std::holds_alternative<std::size_t>(steps[k + 1])) {
+        fail(fmt::format("there is no list \"{}\"", key));
+      }
       place = &table->insert(key, toml::table{}).first->second;
     }
   }

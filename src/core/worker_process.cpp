@@ -177,6 +177,15 @@ void WorkerProcess::kill() const {
   if (id_ > 0) ::kill(id_, SIGKILL);
 }
 
+void WorkerProcess::end() {
+  kill();
+  while (!has_ended_) {
+    pollfd watched{socket_, POLLIN, 0};
+    ::poll(&watched, 1, 100);
+    receive();
+  }
+}
+
 std::string answer_of_a_process(const std::function<std::string()>& ask) {
   WorkerProcess worker([&](std::size_t, const std::atomic<bool>&) { return ask(); });
   worker.assign({});

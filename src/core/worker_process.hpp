@@ -41,6 +41,8 @@ class WorkerProcess {
   /// Sets the flag that the work sees.
   void interrupt() const;
   void kill() const;
+  /// Kills it and waits until it has ended.
+  void end();
 
  private:
   void reap();

@@ -123,9 +123,22 @@ void write_cases(hid_t file, const std::vector<CaseResult>& cases) {
 
 std::vector<Column> read_summary(hid_t file) {
   std::vector<Column> columns;
-  if (!has_link(file, "summary")) return columns;
+  if (!has_link(file, "summary")) {
+    if (has_link(file, "cases") && !link_names(open_group(file, "cases")).empty()) {
+      throw LibraryError("the summary is missing");
+    }
+    return columns;
+  }
   const Handle group = open_group(file, "summary");
   for (const std::string& name : link_names(group)) columns.push_back(read_dataset(group, name));
+  const auto rows = [](const Column& column) {
+    return std::visit([](const auto& values) { return values.size(); }, column.values);
+  };
+  for (const Column& column : columns) {
+    if (rows(column) == rows(columns.front())) continue;
+    throw LibraryError(fmt::format("summary column \"{}\" has {} rows, \"{}\" has {}", column.name,
+                                   rows(column), columns.front().name, rows(columns.front())));
+  }
   return columns;
 }
 

@@ -15,7 +15,11 @@ namespace fw::store {
 class StudyStore final : public study::CaseArchive {
  public:
   /// What earlier runs left.
-  enum class Earlier { reuse, forget };
+  enum class Earlier {
+    reuse,       ///< cases of the result file and of an interrupted run
+    unfinished,  ///< cases of an interrupted run only
+    forget,      ///< nothing
+  };
 
   /// Checks the target as `check_writable_target` does, before anything is computed. Throws InputError,
   /// SystemError.

@@ -43,6 +43,11 @@ std::string difference(const std::vector<Value>& before, const std::vector<Value
 class Comparing {
  public:
   void cases(const CaseResult& before, const CaseResult& after) {
+    if (before.key.empty() || after.key.empty()) {
+      note(before.id, "case",
+           before.key.empty() ? "could not be computed before" : "could not be computed now");
+      return;
+    }
     ++result_.cases;
     if (before.verdict != after.verdict) {
       note(before.id, "verdict",
@@ -55,6 +60,10 @@ class Comparing {
         note(before.id, column.name, "is missing now");
       } else {
         values(before.id, column.name, column.values, found->values);
+        if (column.unit != found->unit || column.attributes != found->attributes ||
+            (column.shape != found->shape && !is_measured(column.name))) {
+          note(before.id, column.name, "has another unit, shape or attribute now");
+        }
       }
     }
     for (const Column& column : after.columns) {

@@ -19,9 +19,10 @@ struct Comparison {
   std::vector<std::string> differences{};  ///< one sentence each, which names case and column
 };
 
-/// Compares every column of every case and of the summary bit for bit (a NaN equals a NaN), and the verdicts;
-/// measured columns and `reason`, which repeats numbers, are left out. A case of `before` that is not in
-/// `after` is a difference, as is one that is only in `after`, if `before` is complete.
+/// Compares every column of every case and of the summary bit for bit (a NaN equals a NaN) with its unit,
+/// shape and attributes, and the verdicts; measured columns and `reason`, which repeats numbers, are left
+/// out. A case that could not be computed in one of them is a difference, so is a case of `before` that is
+/// not in `after`, and one that is only in `after`, if `before` is complete.
 Comparison compare(const StudyResult& before, const StudyResult& after);
 
 }  // namespace fw::study

@@ -35,6 +35,8 @@ struct PlannedCase {
   std::function<CaseResult(const RunContext&)> run;
   /// Its seconds are results: it never runs beside another case, and on one processor.
   bool is_timed = false;
+  /// Cells of the summary that are known before it runs, for the row of a case that cannot be computed.
+  std::vector<SummaryCell> facts{};
 };
 
 /// A study that has been read and checked completely, ready to run.

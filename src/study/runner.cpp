@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <limits>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -31,7 +32,9 @@ double seconds_since(Clock::time_point start) {
 
 /// Gives cases that could not be computed the columns of one that went well, so that the summary stays a
 /// table.
-void complete_rows(StudyResult& study) {
+void complete_rows(StudyResult& study, const Plan& plan) {
+  std::map<std::string_view, const std::vector<SummaryCell>*> facts;
+  for (const PlannedCase& planned : plan.cases) facts[planned.id] = &planned.facts;
   const auto is_complete = [](const CaseResult& result) { return !result.summary.empty(); };
   const auto model = std::find_if(study.cases.begin(), study.cases.end(), is_complete);
   const std::vector<SummaryCell> columns =
@@ -40,8 +43,13 @@ void complete_rows(StudyResult& study) {
           : std::vector<SummaryCell>{{"verdict", "", std::string()}, {"reason", "", std::string()}};
   for (CaseResult& result : study.cases) {
     if (is_complete(result)) continue;
+    const std::vector<SummaryCell>& known = *facts.at(result.id);
     for (SummaryCell cell : columns) {
-      if (cell.name == "verdict") {
+      const auto fact = std::find_if(known.begin(), known.end(),
+                                     [&](const SummaryCell& other) { return other.name == cell.name; });
+      if (fact != known.end() && fact->value.index() == cell.value.index()) {
+        cell.value = fact->value;
+      } else if (cell.name == "verdict") {
         cell.value = std::string(to_string(result.verdict));
       } else if (cell.name == "reason") {
         cell.value = result.reason;
@@ -82,7 +90,7 @@ class Run {
       : plan_(plan),
         archive_(archive),
         options_(options),
-        time_limit_(options.time_limit > 0.0 ? options.time_limit : plan.time_limit),
+        time_limit_(options.time_limit.value_or(plan.time_limit)),
         results_(plan.cases.size()) {}
 
   StudyResult run() {
@@ -200,13 +208,11 @@ class Run {
       desk.index.reset();
       fail(index, "the process of this case " + desk.worker->how_it_ended(), seconds);
     } else if (time_limit_ > 0.0 && seconds > time_limit_) {
-      desk.worker->kill();
-      while (!desk.worker->has_ended()) desk.worker->receive();
+      desk.worker->end();
       desk.index.reset();
       fail(index, fmt::format("ran past its time limit of {} s", time_limit_), seconds);
     } else if (interrupted_at && seconds_since(*interrupted_at) > options_.patience) {
-      desk.worker->kill();
-      while (!desk.worker->has_ended()) desk.worker->receive();
+      desk.worker->end();
       desk.index.reset();
     }
   }
@@ -258,7 +264,7 @@ class Run {
         study.complete = false;
       }
     }
-    complete_rows(study);
+    complete_rows(study, plan_);
     return study;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "study/case_archive.hpp"
 #include "study/plan.hpp"
@@ -25,11 +26,11 @@ struct RunProgress {
 
 struct RunOptions {
   RunContext context;
-  std::string program;      ///< identity of the executable: other code, other cases
-  bool force = false;       ///< run also what the archive holds
-  int jobs = 1;             ///< cases that run at the same time, those that are timed excepted
-  double time_limit = 0.0;  ///< [s] of one case, in place of the plan's; 0: the plan's
-  double patience = 5.0;    ///< [s] that a case has to react to the user's interrupt before it is ended
+  std::string program;                 ///< identity of the executable: other code, other cases
+  bool force = false;                  ///< run also what the archive holds
+  int jobs = 1;                        ///< cases that run at the same time, those that are timed excepted
+  std::optional<double> time_limit{};  ///< [s] of one case, in place of the plan's; 0: none
+  double patience = 5.0;  ///< [s] that a case has to react to the user's interrupt before it is ended
   std::function<void(const RunProgress&)> waiting{};  ///< about ten times a second
   std::function<void(const CaseReport&)> finished{};
 };

@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
 
 #include "core/error.hpp"
 #include "core/toml_assignment.hpp"
+#include "scene/scene.hpp"
 #include "study/parameter_values.hpp"
 
 namespace fw::study {
@@ -23,8 +27,11 @@ struct Parameter {
   std::string name;
   std::string unit;
   std::vector<Value> values;
-  std::vector<std::string> texts{};  ///< of the values, as they stand in names of cases
+  std::vector<std::string> texts{};   ///< of the values, as they stand in names of cases
+  std::vector<std::string> scenes{};  ///< of paths that end in ".scene": the resolved scenes themselves
 };
+
+constexpr std::size_t most_points = 10'000;
 
 std::string text_of(const Value& value, int digits) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
@@ -70,6 +77,24 @@ bool holds_strings(const CheckedTable& section) {
   }
 }
 
+/// The resolved scenes of a parameter that names their files; the specification keeps them as `scene_texts`.
+std::vector<std::string> read_scenes(const CheckedTable& section, const std::vector<Value>& files) {
+  std::vector<std::string> scenes;
+  if (!section.has("scene_texts")) {
+    const std::filesystem::path directory = std::filesystem::path(section.source_name()).parent_path();
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      const auto* file = std::get_if<std::string>(&files[k]);
+      if (file == nullptr) section.fail("values", {k}, "expected the file name of a scene");
+      scenes.push_back(scene::read_scene(directory / *file).resolved_toml);
+    }
+  }
+  scenes = section.strings_or("scene_texts", scenes);
+  if (scenes.size() != files.size()) {
+    section.fail("scene_texts", fmt::format("found {} scenes for {} values", scenes.size(), files.size()));
+  }
+  return scenes;
+}
+
 Parameter read_parameter(const CheckedTable& section) {
   Parameter parameter;
   parameter.path = section.string("path");
@@ -84,13 +109,22 @@ Parameter read_parameter(const CheckedTable& section) {
       parameter.values.push_back(number_value(number));
   }
   if (parameter.values.empty()) section.fail("values", "found an empty list, expected at least one value");
+  const auto is_fit = [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_' || letter == '-';
+  };
+  if (parameter.name.empty() || !std::all_of(parameter.name.begin(), parameter.name.end(), is_fit)) {
+    section.fail("name", fmt::format("found \"{}\", expected letters, digits, _ and -: it names a column",
+                                     parameter.name));
+  }
+  if (parameter.path.ends_with(".scene")) parameter.scenes = read_scenes(section, parameter.values);
   return parameter;
 }
 
 /// At most `count` of the values, the first and the last among them.
-void thin_out(std::vector<Value>& values, std::size_t count) {
+template <class Entry>
+void thin_out(std::vector<Entry>& values, std::size_t count) {
   if (values.size() <= count) return;
-  std::vector<Value> kept;
+  std::vector<Entry> kept;
   for (std::size_t k = 0; k < count; ++k) {
     kept.push_back(values[count == 1 ? 0 : k * (values.size() - 1) / (count - 1)]);
   }
@@ -108,8 +142,19 @@ std::vector<Parameter> read_parameters(const CheckedTable& spec, bool quick) {
       section.fail("path", fmt::format("another parameter is called \"{}\" as well; give one a \"name\"",
                                        parameter.name));
     }
-    if (quick) thin_out(parameter.values, points);
+    if (quick) {
+      thin_out(parameter.values, points);
+      thin_out(parameter.scenes, points);
+    }
     parameter.texts = texts_of(parameter.values, section);
+  }
+  std::size_t product = 1;
+  for (const Parameter& parameter : parameters) {
+    product *= parameter.values.size();
+    if (product > most_points) {
+      throw InputError(fmt::format("{}: the grid of the [[parameter]] sections has more than {} points",
+                                   spec.source_name(), most_points));
+    }
   }
   if (parameters.empty()) {
     throw InputError(fmt::format("{}: found no [[parameter]], expected at least one", spec.source_name()));
@@ -149,13 +194,20 @@ std::vector<std::vector<std::size_t>> grid_points(const std::vector<Parameter>& 
   return points;
 }
 
+/// Whether a parameter chooses the scene of problem `k` of the inner study.
+bool chooses_scene(const std::vector<Parameter>& parameters, std::size_t k) {
+  return std::any_of(parameters.begin(), parameters.end(), [k](const Parameter& parameter) {
+    return parameter.path == fmt::format("problem[{}].scene", k);
+  });
+}
+
 /// Puts the texts of the scenes that the first point has read into the resolved specification, which then
 /// needs no other file.
-void record_scenes(const CheckedTable& study, const Plan& inner) {
+void record_scenes(const CheckedTable& study, const Plan& inner, const std::vector<Parameter>& parameters) {
   const CheckedTable resolved = CheckedTable::parse_text(inner.spec, study.source_name());
   const std::vector<CheckedTable> sections = study.tables("problem"), with_text = resolved.tables("problem");
   for (std::size_t k = 0; k < std::min(sections.size(), with_text.size()); ++k) {
-    if (with_text[k].has("scene_text"))
+    if (with_text[k].has("scene_text") && !chooses_scene(parameters, k))
       sections[k].string_or("scene_text", with_text[k].string("scene_text"));
   }
 }
@@ -164,12 +216,23 @@ void record_scenes(const CheckedTable& study, const Plan& inner) {
 PlannedCase with_parameters(PlannedCase inner, const std::string& point, std::vector<SummaryCell> cells) {
   inner.id = group_name(point + "-" + inner.id);
   inner.identity = "sweep\n" + point + "\n" + inner.identity;
+  inner.facts.insert(inner.facts.begin(), cells.begin(), cells.end());
   inner.run = [run = std::move(inner.run), cells = std::move(cells)](const RunContext& context) {
     CaseResult result = run(context);
     result.summary.insert(result.summary.begin(), cells.begin(), cells.end());
     return result;
   };
   return inner;
+}
+
+/// The inner study with the values of a point; a path that leads nowhere is a mistake of the parameters.
+std::string assigned(const std::string& text, const std::string& where,
+                     const std::vector<TomlAssignment>& assignments, const CheckedTable& spec) {
+  try {
+    return toml_with(text, where, assignments);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: [[parameter]] path: {}", spec.source_name(), error.what()));
+  }
 }
 
 /// What the inner study concludes from the cases of one point.
@@ -207,6 +270,10 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
   spec.strings_or("quantities", {});  // what the plot shows
   const CheckedTable study = spec.table("study");
   study.string_or("title", plan.title);
+  // The resolved specification has it in both places.
+  if (study.has("seed") && study.integer("seed") != plan.seed)
+    study.fail("seed", "expected at the top of the file, where it counts for every point");
+  study.integer_or("seed", plan.seed);
   accept_everything(study);
   const std::string text = study.to_toml_text();
   bool is_first = true;
@@ -218,15 +285,18 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const Value& value = parameters[k].values[point[k]];
       assignments.push_back({parameters[k].path, value});
+      if (!parameters[k].scenes.empty()) {
+        assignments.push_back({parameters[k].path + "_text", parameters[k].scenes[point[k]]});
+      }
       cells.push_back(cell_of(parameters[k], point[k]));
       name += fmt::format("{}{}={}", k > 0 ? "," : "", parameters[k].name, parameters[k].texts[point[k]]);
     }
     const std::string where = fmt::format("{} ([study] with {})", spec.source_name(), group_name(name));
     // The directory stays that of the file, so that scenes are found.
-    const CheckedTable inner_spec = CheckedTable::parse_text(toml_with(text, where, assignments), where);
+    const CheckedTable inner_spec = CheckedTable::parse_text(assigned(text, where, assignments, spec), where);
     Plan inner = read_plan(inner_spec, kinds, catalog, quick);
     if (is_first) {
-      record_scenes(study, inner);
+      record_scenes(study, inner, parameters);
       plan.warnings = inner.warnings;
       if (plan.time_limit == 0.0) plan.time_limit = inner.time_limit;
     }

@@ -53,7 +53,7 @@ TEST(CertifiedReference, IsWithinItsClaimedErrorOfEveryClosedForm) {
       expect_within_claim(allowed, truth, problem.name);
     }
   }
-  EXPECT_EQ(checked, 8);
+  EXPECT_EQ(checked, 9);
 }
 
 TEST(CertifiedReference, AgreesWithGaussCollocationWithinItsClaimedError) {

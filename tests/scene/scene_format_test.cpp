@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <random>
+#include <set>
 
 #include "core/error.hpp"
 #include "scene/scene.hpp"
@@ -208,6 +209,9 @@ TEST(SceneFormat, MakesAnInitialValueProblem) {
 }
 
 TEST(SceneFormat, ReadsEverySceneOfTheProject) {
+  // Studies disturb these: stability and propagation about a state of rest, buckling.
+  const std::set<std::string> at_rest = {"free_spring", "uneven_chain", "damped_chain", "buckling_chain",
+                                         "resting_cloth"};
   std::size_t scenes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(FEDERWERK_SOURCE_DIR "/studies/scenes")) {
     if (entry.path().extension() != ".toml") continue;
@@ -221,7 +225,7 @@ TEST(SceneFormat, ReadsEverySceneOfTheProject) {
     const Ivp ivp = make_ivp(scene, 1.0);
     ivp.system->rhs(0.0, ivp.y0, rate);
     EXPECT_TRUE(rate.allFinite());
-    EXPECT_GT(rate.norm(), 0.0) << "nothing would move";
+    EXPECT_EQ(rate.norm() == 0.0, at_rest.contains(entry.path().stem().string())) << "does it move?";
   }
   EXPECT_GE(scenes, 10u);
 }

@@ -137,7 +137,12 @@ class Reproduce(unittest.TestCase):
         shutil.copy(SCRIPTS / "reproduce", self.root / "scripts")
         for name in ("scripts/bootstrap", "scripts/build"):
             self.tool(name, "exit 0")
-        self.tool("scripts/python", 'echo "drawing $2"; case $2 in *undrawable*) exit 2 ;; esac')
+        self.tool("scripts/python", """
+shift 3  # the script and its formats
+for file; do
+  echo "drawing $file"
+  case $file in *undrawable*) echo "cannot draw $file" >&2; exit 2 ;; esac
+done""")
         self.tool("build/release/bin/federwerk", """
 case $1 in
   show) echo "table of $2"; exit ;;
@@ -200,8 +205,10 @@ exit $(head -n 1 "$input")""")
 
     def test_a_picture_that_cannot_be_drawn_is_a_failure(self):
         self.study("undrawable.toml", 0)
-        self.assertEqual(self.reproduce().returncode, 3)
-        self.assertIn("plot of results/undrawable.h5", self.summary())
+        answer = self.reproduce()
+        self.assertEqual(answer.returncode, 3)
+        self.assertIn("cannot draw results/undrawable.h5", answer.stderr)
+        self.assertIn("a plot could not be drawn", self.summary())
 
     def test_a_failing_build_is_a_failure(self):
         self.study("a.toml", 0)

@@ -41,7 +41,8 @@ TEST(TrajectoryWriter, WritesEveryRootAttributeOfTheContract) {
   EXPECT_EQ(integer_of(attributes, "seed", 0), -7);
   EXPECT_EQ(text_of(attributes, "status"), "complete");
   EXPECT_EQ(text_of(attributes, "solver_status"), "success");
-  EXPECT_EQ(attributes.size(), 17U);
+  EXPECT_EQ(integer_of(attributes, "quick", -1), 0);
+  EXPECT_EQ(attributes.size(), 18U);
 }
 
 TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {

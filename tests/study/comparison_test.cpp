@@ -17,6 +17,7 @@ StudyResult sample() {
   for (const char* id : {"a", "b"}) {
     CaseResult& result = study.cases.emplace_back();
     result.id = id;
+    result.key = std::string("key of ") + id;
     result.verdict = Verdict::holds;
     result.reason = "1.0";
     result.columns = {
@@ -74,6 +75,21 @@ TEST(Comparison, SeesTheLastBitTheSignOfZeroAndEveryOtherChange) {
   EXPECT_THAT(after([](StudyResult& s) { s.cases.pop_back(); }), ElementsAre("b: case: is missing now"));
   EXPECT_THAT(after([](StudyResult& s) { s.cases.push_back(s.cases[0]), s.cases.back().id = "c"; }),
               ElementsAre("c: case: was not there before"));
+}
+
+TEST(Comparison, SeesUnitsShapesAndAttributesAndCasesThatCouldNotBeComputed) {
+  EXPECT_THAT(after([](StudyResult& s) { s.cases[0].columns[0].unit = "s"; }),
+              ElementsAre(HasSubstr("a: error: has another unit")));
+  EXPECT_THAT(after([](StudyResult& s) {
+                s.cases[0].columns[1].shape = {2, 1};
+              }),
+              ElementsAre(HasSubstr("a: count: has another")));
+  EXPECT_THAT(after([](StudyResult& s) {
+                s.cases[0].columns[1].attributes = {{"norm", "x"}};
+              }),
+              ElementsAre(HasSubstr("a: count: has another")));
+  EXPECT_THAT(after([](StudyResult& s) { s.cases[1].key.clear(); }),
+              ElementsAre("b: case: could not be computed now"));
 }
 
 TEST(Comparison, OfAnIncompleteResultAllowsForTheCasesThatWereMissing) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <stdlib.h>
+
+#include <filesystem>
 #include <fstream>
 
 #include "catalog/builtin_catalog.hpp"
@@ -49,6 +52,14 @@ double number_in(const CaseResult& result, const std::string& name) {
   }
   ADD_FAILURE() << "no column " << name;
   return 0.0;
+}
+
+std::vector<double> state(const CaseResult& result) {
+  for (const Column& column : result.columns) {
+    if (column.name == "state") return std::get<0>(column.values);
+  }
+  ADD_FAILURE() << "no column state";
+  return {};
 }
 
 TEST(Sweep, RunsTheInnerStudyAtEveryPointOfTheGrid) {
@@ -102,8 +113,7 @@ TEST(Sweep, RefusesMistakesOfItsOwnAndOfTheInnerStudy) {
   refuses(head + "[[parameter]]\npath = 'problem[1].t_end'\nvalues = [1]\n" + inner,
           "found index 1, expected less than 1");
   refuses(head + "[[parameter]]\npath = 'stepz'\nvalues = [1]\n" + inner, "stepz");
-  refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = [1, 1]\n" + inner,
-          "the same value twice");
+  refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = [1, 1]\n" + inner, "found 1 twice");
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = []\n" + inner, "empty list");
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = [1]\nunits = 's'\n" + inner,
           "unknown key \"units\"");
@@ -128,33 +138,70 @@ TEST(Sweep, LetsTheInnerStudyConcludeAtEveryPoint) {
   EXPECT_EQ(fronts, 2u);
 }
 
-/// A scene file in the current directory of the test.
+/// A scene file in a directory of the test's own.
 class SweepOfAScene : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::ofstream("sweep_scene.toml")
+    std::string name = (std::filesystem::temp_directory_path() / "federwerk-sweep-XXXXXX").string();
+    directory_ = ::mkdtemp(name.data());
+    std::ofstream(directory_ / "sweep_scene.toml")
         << "[particles]\nposition = [[0,0,0], [1.2,0,0]]\nmass = 1\nfixed = [0]\n"
            "[springs]\nbetween = [[0,1]]\nstiffness = 4\nrest_length = 1\n";
   }
-  void TearDown() override { std::remove("sweep_scene.toml"); }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  /// As if the study file stood beside the scene.
+  Plan plan_here(const std::string& text, const std::string& name = "sweep.toml") const {
+    return read_plan(CheckedTable::parse_text(text, (directory_ / name).string()), catalog::study_kinds(),
+                     catalog::BuiltinCatalog(), false);
+  }
+
+  std::filesystem::path directory_;
 };
 
 TEST_F(SweepOfAScene, SetsNumbersOfTheSceneAndNeedsNoFileAfterwards) {
-  const Plan plan = plan_of(head +
-                            "[[parameter]]\npath = 'problem[0].set.springs.stiffness'\nvalues = [4, 9]\n"
-                            "[study]\nkind = 'simulate'\nmethods = ['rk4']\nsteps = [0.1]\nframes = 2\n"
-                            "[[study.problem]]\nscene = 'sweep_scene.toml'\nt_end = 1\n");
+  const Plan plan = plan_here(head +
+                              "[[parameter]]\npath = 'problem[0].set.springs.stiffness'\nvalues = [4, 9]\n"
+                              "[study]\nkind = 'simulate'\nmethods = ['rk4']\nsteps = [0.1]\nframes = 2\n"
+                              "[[study.problem]]\nscene = 'sweep_scene.toml'\nt_end = 1\n");
   const StudyResult first = result_of(plan);
   ASSERT_EQ(first.cases.size(), 2u);
-  const auto state = [](const CaseResult& result) { return std::get<0>(result.columns[4].values); };
-  EXPECT_EQ(first.cases[0].columns[4].name, "state");
+
   EXPECT_NE(state(first.cases[0]), state(first.cases[1]));
-  std::remove("sweep_scene.toml");
+  std::filesystem::remove(directory_ / "sweep_scene.toml");
   const Plan again = read_plan(CheckedTable::parse_text(plan.spec, "result.h5 (spec)"),
                                catalog::study_kinds(), catalog::BuiltinCatalog(), false);
   const StudyResult second = result_of(again);
   EXPECT_EQ(state(second.cases.at(0)), state(first.cases[0]));
   EXPECT_EQ(state(second.cases.at(1)), state(first.cases[1]));
+}
+
+TEST_F(SweepOfAScene, OverScenesKeepsTheTextOfEach) {
+  std::ofstream(directory_ / "sweep_other.toml")
+      << "[particles]\nposition = [[0,0,0], [1.5,0,0]]\nmass = 2\nfixed = [0]\n"
+         "[springs]\nbetween = [[0,1]]\nstiffness = 4\nrest_length = 1\n";
+  const Plan plan = plan_here(
+      head +
+      "[[parameter]]\npath = 'problem[0].scene'\nvalues = ['sweep_scene.toml', 'sweep_other.toml']\n"
+      "[study]\nkind = 'simulate'\nmethods = ['rk4']\nsteps = [0.1]\nframes = 2\n"
+      "[[study.problem]]\nscene = 'sweep_scene.toml'\nt_end = 1\n");
+  const StudyResult first = result_of(plan);
+  std::filesystem::remove(directory_ / "sweep_other.toml");
+  std::filesystem::remove(directory_ / "sweep_scene.toml");
+  const StudyResult second = result_of(read_plan(CheckedTable::parse_text(plan.spec, "result.h5 (spec)"),
+                                                 catalog::study_kinds(), catalog::BuiltinCatalog(), false));
+
+  EXPECT_NE(state(first.cases.at(0)), state(first.cases.at(1)));
+  EXPECT_EQ(state(second.cases.at(0)), state(first.cases.at(0)));
+  EXPECT_EQ(state(second.cases.at(1)), state(first.cases.at(1)));
+}
+
+TEST(Sweep, NamesThePointOfACaseThatCouldNotBeComputed) {
+  Plan plan = plan_of(head + stiffness + inner);
+  plan.cases[1].run = [](const RunContext&) -> CaseResult { throw std::runtime_error("broken on purpose"); };
+  const StudyResult result = result_of(plan);
+  EXPECT_EQ(result.cases.at(1).verdict, Verdict::fails);
+  EXPECT_EQ(number_in(result.cases.at(1), "parameter_stiffness"), 2.5);
 }
 
 TEST_F(SweepOfAScene, FamiliesVaryANumberOfACatalogueProblemOrOfAScene) {
@@ -165,7 +212,7 @@ TEST_F(SweepOfAScene, FamiliesVaryANumberOfACatalogueProblemOrOfAScene) {
       "[[problem]]\nscene = 'sweep_scene.toml'\nt_end = 1\nvary = { parameter = 'springs.damping', values = "
       "[0, 0.5] }\n"
       "[[problem]]\nname = 'rotation'\n",
-      "family.toml");
+      (directory_ / "family.toml").string());
   const std::vector<ProblemFamily> families =
       read_problem_families(spec, catalog::BuiltinCatalog(), warnings);
   spec.finish();
