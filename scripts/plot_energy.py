@@ -205,9 +205,10 @@ def draw_rounding(result, problem, members):
             low, high = max(low, lowest / 10), min(high, 1e3 * highest)
             panel.set_ylim(low, high)
         time = time[time > 0]
-        walk = numpy.sqrt(low * high) * numpy.sqrt(time / numpy.sqrt(time[0] * time[-1]))
-        panel.loglog(time, walk, linestyle=(0, (5, 3)), color=QUIET, linewidth=1.0)
-        panel.annotate("√t", (time[-1], walk[-1]), color=QUIET, xytext=(4, 0), textcoords="offset points")
+        if time.size:  # else the run stopped at its first step
+            walk = numpy.sqrt(low * high) * numpy.sqrt(time / numpy.sqrt(time[0] * time[-1]))
+            panel.loglog(time, walk, linestyle=(0, (5, 3)), color=QUIET, linewidth=1.0)
+            panel.annotate("√t", (time[-1], walk[-1]), color=QUIET, xytext=(4, 0), textcoords="offset points")
         panel.set_title(f"change of {title}", loc="left")
         panel.set_xlabel(label("time t", "s"))
         panel.set_ylabel("relative to the energy" if scale_name else label("change", result.unit(name, case)))

@@ -233,7 +233,8 @@ def draw_thresholds(result, rows):
     """The two thresholds of one scheme over k, and those of all schemes in units of 1/k."""
     rows = [row for row in rows
             if not numpy.isnan(result.values("observed_limit", result.case_of(row))).all()]
-    shown = next((row for row in rows if has_thresholds(result, row)), None)
+    shown = next((row for row in rows if has_thresholds(result, row)
+                  and numpy.isfinite(result.values("predicted_limit", result.case_of(row))).all()), None)
     if shown is None:
         return None
     figure, axes = new_figure(result, 15, 5.6, 1, 2)

@@ -80,7 +80,7 @@ def new_figure(result, width, height, rows=1, columns=1, **options):
     footer_height = 0.3 / height
     figure.get_layout_engine().set(rect=(0, footer_height, 1, 1 - footer_height), w_pad=0.1, h_pad=0.1)
     figure.text(8 / (72 * width), 6 / (72 * height), result.provenance(), fontsize=8.5,
-                color=QUIET if result.complete else ALARM, va="bottom")
+                color=ALARM if not result.complete or result.not_computed() else QUIET, va="bottom")
     return figure, axes
 
 
@@ -115,12 +115,19 @@ def main(description, choose_drawing, arguments=None):
         try:
             with ResultFile(path) as result:
                 draw = choose_drawing(result)
-                if draw is None:
+                missing = result.not_computed()
+                if missing and not result.cases():
+                    print(f"{path}: nothing to draw: no case was computed")
+                    continue
+                if missing:
+                    print(f"{path}: not drawn, since they could not be computed: {', '.join(missing)}", file=sys.stderr)
+                figures = draw(result) if draw is not None else []
+                if not figures:
                     print(f'{path}: nothing to draw for kind "{result.kind}"')
                     continue
                 directory = options.output or path.parent
                 directory.mkdir(parents=True, exist_ok=True)
-                for written in save(draw(result), result, directory, formats):
+                for written in save(figures, result, directory, formats):
                     print(written)
         except ResultError as error:
             print(error, file=sys.stderr)

@@ -59,7 +59,7 @@ def series_of(result, columns, parameter):
 
 
 def draw(result):
-    columns = {name: result.values(f"summary/{name}") for name in result.dataset("summary")}
+    columns = result.columns()
     parameters = [name for name in columns if name.startswith(PREFIX)]
     parameter = next((name for name in parameters if numeric(columns[name])), parameters[0])
     quantities = quantities_of(result, columns)

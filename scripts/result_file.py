@@ -51,6 +51,8 @@ class ResultFile:
         dirty = " + uncommitted changes" if bool(attributes.get("git_dirty", False)) else ""
         created = text(attributes.get("created", "unknown date"))[:10]
         partial = "" if self.complete else " · INCOMPLETE: cases are missing"
+        failed = len(self.not_computed())
+        partial += f" · {failed} case{'s' if failed > 1 else ''} could not be computed" if failed else ""
         return f"{self.title} · federwerk {commit}{dirty} · {created}{partial}"
 
     def dataset(self, name, group=None):
@@ -71,23 +73,39 @@ class ResultFile:
     def unit(self, name, group=None):
         return text(self.dataset(name, group).attrs.get("unit", ""))
 
-    def cases(self):
-        """The groups below /cases by name, without the vector field."""
-        groups = self.dataset("cases")
-        found = {name: group for name, group in groups.items() if name != "vector_field"}
-        if not found:
-            raise self.error("found no case below /cases")
-        return found
+    @staticmethod
+    def was_computed(group):
+        """Whether a case has a result: one that threw, crashed or ran out of time has a group, but no key."""
+        return text(group.attrs.get("key", "a file without keys")) != ""
 
-    def summary(self):
-        """The rows of the summary: a list of dictionaries, column name to value."""
-        columns = {name: self.values(name) for name in
-                   (f"summary/{column}" for column in self.dataset("summary"))}
+    def not_computed(self):
+        """The names of the cases that have no result."""
+        return [name for name, group in self.file.get("cases", {}).items() if not self.was_computed(group)]
+
+    def cases(self):
+        """The groups below /cases by name that have a result, without the vector field."""
+        groups = {name: group for name, group in self.dataset("cases").items() if name != "vector_field"}
+        if not groups:
+            raise self.error("found no case below /cases")
+        return {name: group for name, group in groups.items() if self.was_computed(group)}
+
+    def columns(self):
+        """The columns of the summary by name, without the rows of cases that have no result."""
+        columns = {name: self.values(name, self.file["summary"]) for name in self.dataset("summary")}
         lengths = {len(column) for column in columns.values()}
         if len(lengths) != 1:
             raise self.error(f"the columns of /summary have the lengths {sorted(lengths)}, expected one length")
-        names = [name.split("/", 1)[1] for name in columns]
-        return [dict(zip(names, row)) for row in zip(*columns.values())]
+        missing = set(self.not_computed())
+        if not missing or "case" not in columns:
+            return columns
+        kept = [row for row, name in enumerate(columns["case"]) if name not in missing]
+        return {name: [column[row] for row in kept] if isinstance(column, list) else column[kept]
+                for name, column in columns.items()}
+
+    def summary(self):
+        """The rows of the summary that have a result: a list of dictionaries, column name to value."""
+        columns = self.columns()
+        return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
     def case_of(self, row):
         """The group of the case that a summary row describes."""

@@ -25,7 +25,7 @@ def read_case(result, group):
 
 def read_field(result):
     """The vector field as arrays "t", "y", "dydt", or None where the file has none."""
-    if "cases/vector_field" not in result.file:
+    if "cases/vector_field" not in result.file or not result.was_computed(result.file["cases/vector_field"]):
         return None
     group = result.file["cases/vector_field"]
     field = {name: numpy.asarray(result.values(f"field_{name}", group), dtype=float) for name in ("t", "y", "dydt")}

@@ -65,12 +65,17 @@ bool is_measurable(const analysis::NumericalOscillation& theory, std::int64_t tr
 
 class Motion final : public Observer {
  public:
+  explicit Motion(const RunContext& context) : context_(context) {}
+
   bool observe(const StepView& view) override {
     times.push_back(view.time);
     positions.push_back(view.state[0]);
-    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12;
+    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12 && !context_.is_interrupted();
   }
   std::vector<double> times, positions;
+
+ private:
+  const RunContext& context_;
 };
 
 class DissipationCase {
@@ -83,7 +88,8 @@ class DissipationCase {
         factors_(theory),
         spring_(spring),
         settings_(settings),
-        context_(context) {}
+        context_(context),
+        motion_(context) {}
 
   CaseResult run() {
     predict();
@@ -151,6 +157,7 @@ class DissipationCase {
     ivp.t1 = ivp.t0 + std::round(settings_.shown_periods * settings_.shown_steps_per_period) * h;
     integrator_.solve(ivp, FixedStep{.step = h}, motion_);
     for (const double t : motion_.times) {
+      if (context_.is_interrupted()) throw Interrupted{};
       exact_positions_.push_back(static_cast<double>(spring_.exact(Float128(t)).front()));
     }
   }
@@ -294,6 +301,9 @@ class DissipationCase {
   std::string reason_;
 };
 
+/// Steps of the motion that is kept, and of the window of a fit.
+constexpr double most_shown_steps = 1e5, most_window_steps = 1e6;
+
 Settings read_settings(const CheckedTable& spec, bool quick) {
   Settings s;
   const CheckedTable table = spec.table_or_empty("dissipation");
@@ -311,6 +321,18 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
   s.shown_periods = table.number_or("shown_periods", s.shown_periods, NumberRule::positive);
   if (s.shown_steps_per_period * s.shown_periods < 1.0) {
     table.fail("shown_periods", "found less than one step in all, expected more");
+  }
+  if (s.shown_steps_per_period * s.shown_periods > most_shown_steps) {
+    table.fail("shown_periods",
+               fmt::format("found {} periods of {} steps, expected at most {:.0f} steps in all",
+                           s.shown_periods, s.shown_steps_per_period, most_shown_steps));
+  }
+  // The finest step, of the range or of the motion that is shown, has the longest window.
+  const double finest = std::min(s.from, s.shown());
+  if (2.0 * std::numbers::pi / finest * s.periods > most_window_steps) {
+    table.fail("periods",
+               fmt::format("found {} periods of {:.3g} steps, expected at most {:.0f} steps in a window",
+                           s.periods, 2.0 * std::numbers::pi / finest, most_window_steps));
   }
   s.infinity = table.number_or("infinity", s.infinity, NumberRule::positive);
   s.tolerance = table.number_or("tolerance", s.tolerance, NumberRule::positive);

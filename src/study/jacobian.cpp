@@ -110,10 +110,15 @@ DerivativeSpec read_derivatives(const CheckedTable& spec, const QuickRule& rule)
   settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
   settings.slope_tolerance =
       table.number_or("slope_tolerance", settings.slope_tolerance, NumberRule::positive);
-  settings.largest_increment =
-      table.number_or("largest_increment", settings.largest_increment, NumberRule::positive);
-  settings.smallest_increment =
-      table.number_or("smallest_increment", settings.smallest_increment, NumberRule::positive);
+  const auto increment = [&](const std::string& key, double value) {
+    const double found = table.number_or(key, value, NumberRule::positive);
+    if (found < 1e-20 || found > 1e3) {
+      table.fail(key, fmt::format("found {}, expected 1e-20 to 1000 typical lengths", found));
+    }
+    return found;
+  };
+  settings.largest_increment = increment("largest_increment", settings.largest_increment);
+  settings.smallest_increment = increment("smallest_increment", settings.smallest_increment);
   if (settings.smallest_increment >= settings.largest_increment) {
     table.fail("smallest_increment", fmt::format("found {}, expected less than the largest increment {}",
                                                  settings.smallest_increment, settings.largest_increment));
@@ -213,6 +218,21 @@ void require_springs(const CheckedTable& spec, const std::string& section, const
   }
 }
 
+/// All matrices of these parts are dense.
+void require_small(const CheckedTable& spec, const std::string& section, const StudyProblem& problem,
+                   Index unknowns, Index most) {
+  if (unknowns <= most) return;
+  throw InputError(
+      fmt::format("{}: [{}]: problem \"{}\" has {} unknowns, expected at most {}: its matrices are dense",
+                  spec.source_name(), section, problem.label, unknowns, most));
+}
+
+/// Unknowns (of ẏ = f) up to which a Jacobian is built by complex steps, and degrees of freedom up to which
+/// all eigenvalues at every compression and step take minutes rather than hours.
+constexpr Index most_unknowns = 5000, most_degrees_of_freedom = 600;
+/// Steps of one run of [runs].
+constexpr double most_steps = 1e6;
+
 void plan_definiteness(const CheckedTable& spec, const std::vector<StudyProblem>& problems,
                        const QuickRule& rule, Plan& plan) {
   if (!spec.has("definiteness")) return;
@@ -231,6 +251,8 @@ void plan_definiteness(const CheckedTable& spec, const std::vector<StudyProblem>
   }
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "definiteness", problem);
+    require_small(spec, "definiteness", problem,
+                  problem.problem.ivp.system->second_order()->degrees_of_freedom(), most_degrees_of_freedom);
     DefinitenessSettings own = settings;
     own.squeeze = scaled(settings.squeeze, problem);
     for (const std::string& model : models) {
@@ -257,6 +279,14 @@ void plan_runs(const CheckedTable& spec, const Catalog& catalog, const std::vect
   const std::vector<std::string> methods = read_methods(table, catalog);
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "runs", problem);
+    const double duration = problem.problem.ivp.t1 - problem.problem.ivp.t0;
+    for (const double step : settings.steps) {
+      if (duration / step > most_steps) {
+        table.fail("steps",
+                   fmt::format("found {}, expected at most 1 000 000 steps in the {} s of problem \"{}\"",
+                               step, duration, problem.label));
+      }
+    }
     CompressedRunSettings own = settings;
     own.squeeze = scaled(settings.squeeze, problem);
     for (std::size_t k = 0; k < methods.size(); ++k) {
@@ -286,7 +316,10 @@ void read_jacobian(const CheckedTable& spec, const Catalog& catalog, bool quick,
   if (!spec.has("springs") || spec.has("problem")) problems = read_problems(spec, catalog, plan.warnings);
   plan_springs(spec, derivatives, rule, plan);
   if (wants_derivatives) {
-    for (const StudyProblem& problem : problems) plan_problem_derivatives(problem, derivatives, plan);
+    for (const StudyProblem& problem : problems) {
+      require_small(spec, "derivatives", problem, problem.problem.ivp.y0.size(), most_unknowns);
+      plan_problem_derivatives(problem, derivatives, plan);
+    }
   }
   plan_definiteness(spec, problems, rule, plan);
   plan_runs(spec, catalog, problems, rule, plan);

@@ -172,7 +172,7 @@ class DefinitenessCase {
       record(newton(ivp, step, model_, true), newton_cg_, newton_cg_status_);
       record(conjugate_gradients(ivp, A, step), cg_, cg_status_);
       const bool is_definite = std::isnan(limit_.back()) || step < (1.0 - limit_tolerance) * limit_.back();
-      if (is_definite && cg_status_.back() == to_string(StatusCode::matrix_indefinite)) ++wrong_curvatures_;
+      if (is_definite && cg_.back() == failed) ++wrong_failures_;
     }
   }
 
@@ -201,7 +201,7 @@ class DefinitenessCase {
   }
 
   void judge(const JacobianRow& row, CaseResult& result) const {
-    result.verdict = wrong_limits_ == 0 && wrong_curvatures_ == 0 ? Verdict::holds : Verdict::fails;
+    result.verdict = wrong_limits_ == 0 && wrong_failures_ == 0 ? Verdict::holds : Verdict::fails;
     const std::string definite =
         std::isnan(row.predicted_limit_step)
             ? fmt::format(
@@ -210,9 +210,9 @@ class DefinitenessCase {
             : fmt::format("A is indefinite from h = {:.4g} s on, where the spectrum predicts it to {:.0e}",
                           row.limit_step, std::max(largest_difference_, 1e-16));
     const std::string wrong = fmt::format(
-        "{} of {} limits are not as predicted (least found {:.4g} s, predicted {:.4g} s), {} negative "
-        "curvatures where A is definite",
-        wrong_limits_, limit_.size(), row.limit_step, row.predicted_limit_step, wrong_curvatures_);
+        "{} of {} limits are not as predicted (least found {:.4g} s, predicted {:.4g} s), {} failures of "
+        "conjugate gradients where A is definite",
+        wrong_limits_, limit_.size(), row.limit_step, row.predicted_limit_step, wrong_failures_);
     result.reason = fmt::format(
         "{}; of {} points Newton fails at {} (at {} with CG), CG fails at {}; {:.3g} "
         "Newton and {:.3g} CG iterations on average",
@@ -246,7 +246,7 @@ class DefinitenessCase {
   std::vector<std::int64_t> newton_, newton_cg_, cg_;
   std::vector<std::string> newton_status_, newton_cg_status_, cg_status_;
   double largest_difference_ = 0.0;
-  int wrong_limits_ = 0, wrong_curvatures_ = 0;
+  int wrong_limits_ = 0, wrong_failures_ = 0;
 };
 
 }  // namespace

@@ -26,8 +26,8 @@ TangentModel tangent_model(const std::string& name);
 /// eigenvalues, the step from which A is indefinite, and what Newton's iteration (one step of implicit Euler)
 /// and conjugate gradients (the system of the linearised step) make of it. Verdict: A is definite up to the
 /// step 1/μ that the spectrum predicts
-/// (`analysis::fastest_growth_rate`), with psd_projection at every step, and conjugate gradients meet a
-/// negative curvature nowhere where A is definite.
+/// (`analysis::fastest_growth_rate`), with psd_projection at every step, and conjugate gradients fail
+/// nowhere where A is definite.
 CaseResult run_definiteness(const StudyProblem& problem, const std::string& model,
                             const DefinitenessSettings& settings, const RunContext& context);
 

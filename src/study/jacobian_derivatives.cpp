@@ -53,7 +53,7 @@ Derivatives by_complex_steps(const JacobianSample& sample) {
 double relative_deviation(const Matrix& found, const Matrix& oracle) {
   if (oracle.size() == 0) return JacobianRow::none;
   const double scale = oracle.cwiseAbs().maxCoeff();
-  const double deviation = (found - oracle).cwiseAbs().maxCoeff();
+  const double deviation = (found - oracle).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   return scale > 0.0 ? deviation / scale : deviation;
 }
 
@@ -148,14 +148,15 @@ PowerLaw fit_between(const std::vector<double>& increment, const std::vector<dou
                      double high) {
   std::vector<double> x, y;
   for (std::size_t k = 0; k < increment.size(); ++k) {
-    if (increment[k] < low || increment[k] > high) continue;
+    if (increment[k] < low || increment[k] > high || !std::isfinite(error[k])) continue;
     x.push_back(increment[k]);
     y.push_back(error[k]);
   }
   return analysis::fit_power_law(x, y);
 }
 
-/// The error over the increment: the geometric mean over the samples, in which single zeros do not count.
+/// The error over the increment: the geometric mean over the samples, in which single zeros do not count; NaN
+/// where a sample's error is not finite, since a mean without it would tell less than the truth.
 std::vector<double> error_curve(const std::vector<JacobianSample>& samples, Difference difference,
                                 const std::vector<double>& increment, const RunContext& context) {
   std::vector<double> logarithms(increment.size(), 0.0), counts(increment.size(), 0.0);
@@ -167,8 +168,8 @@ std::vector<double> error_curve(const std::vector<JacobianSample>& samples, Diff
       const Matrix J = analysis::difference_jacobian(*sample.system, sample.time, sample.state,
                                                      increment[k] * length, difference);
       const double error = relative_deviation(parts_of(*sample.system, J).K, oracle);
-      if (!(error > 0.0)) continue;
-      logarithms[k] += std::log(error);
+      if (error == 0.0) continue;
+      logarithms[k] += std::isfinite(error) ? std::log(error) : JacobianRow::none;
       counts[k] += 1.0;
     }
   }
@@ -191,14 +192,24 @@ void run_difference(const std::vector<JacobianSample>& samples, Difference diffe
   const std::vector<double> increment = increments(settings);
   const std::vector<double> error = error_curve(samples, difference, increment, context);
   result.columns = {{"increment", "1", increment, {}, {}}, {"deviation", "1", error, {}, {}}};
-  const auto best = static_cast<std::size_t>(std::min_element(error.begin(), error.end()) - error.begin());
+  const auto known = std::find_if(error.begin(), error.end(), [](double e) { return std::isfinite(e); });
+  if (known == error.end()) {
+    result.reason = "no error is finite at any increment";
+    return;
+  }
+  const auto coarsest = static_cast<std::size_t>(known - error.begin());
+  std::size_t best = coarsest;
+  row.deviation = error[coarsest];
+  for (std::size_t k = coarsest; k < error.size(); ++k) {
+    if (error[k] < error[best]) best = k;
+    if (error[k] > row.deviation) row.deviation = error[k];
+  }
   row.best_increment = increment[best];
   row.best_deviation = error[best];
-  row.deviation = largest(error);
-  if (error.front() <= linear_error) {
+  if (error[coarsest] <= linear_error) {
     result.reason =
         fmt::format("f is linear here: no truncation error (deviation {:.1e} at increment {:.0e})",
-                    error.front(), increment.front());
+                    error[coarsest], increment[coarsest]);
     return;
   }
   const int order = difference == Difference::forward ? 1 : 2;

@@ -317,6 +317,23 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
   return settings;
 }
 
+/// Displacements that a case keeps: (steps + 1) × masses.
+constexpr double most_displacements = 5e7;
+
+void require_fitting(const CheckedTable& spec, const Settings& settings, const DisturbedNetwork& network) {
+  const auto masses = static_cast<double>(network.masses());
+  for (const double step : settings.steps) {
+    const auto states = static_cast<double>(settings.steps_of(step) + 1);
+    if (states * masses <= most_displacements) continue;
+    spec.table("propagation")
+        .fail(
+            settings.duration > 0.0 ? "duration" : "step_count",
+            fmt::format("found {:.0f} states of the {:.0f} masses of problem \"{}\", expected at most {:.0f} "
+                        "displacements in a case",
+                        states, masses, network.label, most_displacements));
+  }
+}
+
 void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
   const Settings settings = read_settings(spec, quick);
   const std::vector<std::string> methods = read_methods(spec, catalog);
@@ -328,6 +345,7 @@ void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool qui
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", spec.source_name(), error.what()));
     }
+    require_fitting(spec, settings, *network);
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);

@@ -27,6 +27,11 @@ WorkPrecisionSettings read_settings(const CheckedTable& spec, bool quick) {
   settings.fewest_steps = table.integer_or("fewest_steps", settings.fewest_steps, 1, 1'000'000'000);
   positive("start_error", settings.start_error);
   positive("finest_error", settings.finest_error);
+  if (settings.finest_error >= settings.start_error) {
+    table.fail(table.has("finest_error") ? "finest_error" : "start_error",
+               fmt::format("found a finest error of {} and a start error of {}, expected it to be smaller",
+                           settings.finest_error, settings.start_error));
+  }
   positive("first_tolerance", settings.first_tolerance);
   positive("smallest_tolerance", settings.smallest_tolerance);
   positive("absolute_over_relative", settings.absolute_over_relative);
@@ -64,6 +69,20 @@ bool can_run(const MethodInfo& info, LadderControl control) {
   return control == LadderControl::fixed ? info.has_fixed_step : info.is_adaptive;
 }
 
+/// Single methods without a control are left out; a study of none would be empty.
+void require_a_ladder(const CheckedTable& spec, const Catalog& catalog,
+                      const std::vector<std::string>& methods, const std::vector<LadderControl>& controls) {
+  for (const std::string& call : methods) {
+    const std::shared_ptr<const Integrator> integrator = catalog.method(call);
+    for (const LadderControl control : controls) {
+      if (can_run(integrator->info(), control)) return;
+    }
+  }
+  spec.fail("methods",
+            fmt::format("found no method that can run with control = \"{}\", expected at least one",
+                        to_string(controls.front())));
+}
+
 void read_work_precision(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
   const WorkPrecisionSettings settings = read_settings(spec, quick);
   const std::vector<LadderControl> controls = read_controls(spec);
@@ -72,6 +91,7 @@ void read_work_precision(const CheckedTable& spec, const Catalog& catalog, bool 
   const ReferenceArithmetic arithmetic =
       reference == "binary128" ? ReferenceArithmetic::binary128 : ReferenceArithmetic::binary64;
   const std::vector<std::string> methods = read_method_patterns(spec, catalog);
+  require_a_ladder(spec, catalog, methods, controls);
   std::vector<StudyProblem> problems;
   for (ProblemFamily& family : read_problem_families(spec, catalog, plan.warnings)) {
     for (StudyProblem& member : family.members) problems.push_back(std::move(member));

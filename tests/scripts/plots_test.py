@@ -1,5 +1,7 @@
 """The plot scripts, on synthetic result files: what stands in the pictures, and how bad files are refused."""
 
+import contextlib
+import io
 import pathlib
 import subprocess
 import sys
@@ -23,6 +25,7 @@ import plot_jacobian  # noqa: E402
 import plot_linear_solver  # noqa: E402
 import plot_oscillation  # noqa: E402
 import plot_propagation  # noqa: E402
+import plot_results  # noqa: E402
 import plot_slope_field  # noqa: E402
 import plot_spiral  # noqa: E402
 import plot_stability  # noqa: E402
@@ -115,6 +118,83 @@ class EveryPlot(PlotTest):
         figure, = self.draw(plot_trajectory, self.write("trajectory"))
         self.assertEqual(sorted(axes.get_ylabel() for axes in figure.axes),
                          ["L [kg·m²/s]", "energy [J]", "p [kg·m/s]", "z [m]"])
+
+
+def fail(path, names=None):
+    """Makes cases of a file look as federwerk leaves those that it could not compute: all of them where no names are
+    given. Returns the names."""
+    with h5py.File(path, "r+") as file:
+        cases = file.require_group("cases")
+        for name in file["summary/case"].asstr()[:] if "summary/case" in file else []:
+            cases.require_group(name)
+        names = list(cases) if names is None else names
+        for name in cases:
+            for column in list(cases[name]) if name in names else []:
+                del cases[name][column]
+            cases[name].attrs["key"] = "" if name in names else "0123"
+        if "case" not in file.get("summary", {}):
+            return names
+        summary = file["summary"]
+        rows = [row for row, name in enumerate(summary["case"].asstr()[:]) if name in names]
+        for name in list(summary):
+            if len(rows) == len(summary["case"]) and name not in ("case", "verdict", "reason"):
+                del summary[name]  # a column is made of what the cases say
+            elif name not in ("case", "verdict", "reason"):
+                values = summary[name][:]
+                values[rows] = {"f": numpy.nan, "O": ""}.get(values.dtype.kind, 0)
+                summary[name][:] = values
+    return names
+
+
+class CasesThatCouldNotBeComputed(PlotTest):
+    KINDS = ["agreement", "construction", "convergence", "dissipation", "energy", "jacobian", "linear_solver", "oscillation",
+             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "work_precision"]
+
+    def make(self, kind):
+        path = self.folder / f"{kind}.h5"
+        getattr(synthetic_results, kind)(path)
+        return path
+
+    def names(self, kind):
+        with h5py.File(self.make(kind)) as file:
+            return list(file["cases"]) if "cases" in file else list(file["summary/case"].asstr()[:])
+
+    def test_are_looked_at_for_every_script_that_draws_cases(self):
+        scripts = {path.stem.removeprefix("plot_") for path in SCRIPTS.glob("plot_*.py")}
+        self.assertEqual(scripts - set(self.KINDS), {"results", "style", "trajectory"})
+
+    def test_of_all_cases_leave_nothing_to_draw(self):
+        for kind in self.KINDS:
+            path = self.make(kind)
+            fail(path)
+            with ResultFile(path) as result:
+                own = plot_style.expect_kind(result.kind, sys.modules[f"plot_{kind}"].draw)
+            for choose in (own, plot_results.choose_drawing):
+                with self.subTest(kind, script=choose.__module__), contextlib.redirect_stdout(io.StringIO()) as answer:
+                    self.assertEqual(plot_style.main("", choose, [str(path)]), 0)
+                    self.assertEqual(answer.getvalue(), f"{path}: nothing to draw: no case was computed\n")
+        self.assertEqual(list(self.folder.glob("*.png")), [])
+
+    def test_of_any_one_case_leave_the_others_to_be_drawn(self):
+        for kind in set(self.KINDS) - {"vector_field"}:  # it has one case
+            names = self.names(kind)
+            for name in names if len(names) > 1 else []:
+                with self.subTest(kind, case=name):
+                    path = self.make(kind)
+                    fail(path, [name])
+                    for figure in self.draw(sys.modules[f"plot_{kind}"], path):
+                        footers = [text.get_text() for text in figure.texts if "federwerk" in text.get_text()]
+                        self.assertIn("1 case could not be computed", footers[0])
+                    plot_style.plt.close("all")
+
+    def test_are_named_in_one_message(self):
+        path = self.make("convergence")
+        fail(path, ["henon_heiles-rk4", "henon_heiles-midpoint"])
+        answer = self.script("plot_results.py", path)
+        self.assertEqual(answer.returncode, 0)
+        self.assertEqual(answer.stderr, f"{path}: not drawn, since they could not be computed: henon_heiles-midpoint, "
+                                        "henon_heiles-rk4\n")
+        self.assertEqual(answer.stdout, f"{self.folder / 'convergence.png'}\n")
 
 
 class Agreement(PlotTest):

@@ -110,6 +110,11 @@ TEST(Dissipation, RefusesBadInputBeforeAnythingRuns) {
   EXPECT_THAT(refusal_of(spec("\"sundials:cvode_bdf\""), catalog),
               HasSubstr("expected a method with a fixed step"));
   EXPECT_THAT(refusal_of(spec("\"xpbd\""), catalog), HasSubstr("on a single spring"));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "shown_steps_per_period = 1e6\nshown_periods = 100\n"), catalog),
+              HasSubstr("expected at most 100000 steps in all"));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "periods = 1e6\n"), catalog), HasSubstr("steps in a window"));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "shown_steps_per_period = 1e9\nshown_periods = 1e-5\n"), catalog),
+              HasSubstr("steps in a window"));
   EXPECT_THAT(refusal_of(spec("\"rk4\"", "counts = 2\n"), catalog), HasSubstr("did you mean \"count\""));
   EXPECT_THAT(
       refusal_of(

@@ -119,6 +119,26 @@ TEST(JacobianStudy, SaysWhereALinearForceHasNoTruncationError) {
   EXPECT_THAT(cases.at("harmonic_oscillator-forward").reason, HasSubstr("linear"));
 }
 
+TEST(JacobianStudy, CountsNoErrorThatIsNotFinite) {
+  const double rest =
+      catalog::BuiltinCatalog().problem("small_cloth", {{"count", 3.0}, {"gravity", 0.0}}).ivp.y0[0];
+  /// A force that is not a number where a difference has moved the first mass by more than `reach`.
+  const auto beyond = [rest](double reach) {
+    return WrongProblems(
+        {.force = [=](const SecondOrderSystem&, ConstVectorRef q, ConstVectorRef, VectorRef f) {
+          if (std::abs(q[0] - rest) > reach) f[0] = std::nan("");
+        }});
+  };
+  const std::string one =
+      "[derivatives]\nformulas = [\"central\"]\nsamples = 1\ndisplacement = 0.0\npattern = false\n" + cloth;
+  const CaseResult all = run(one, beyond(-1.0)).at("small_cloth-central");
+  EXPECT_EQ(all.verdict, Verdict::not_applicable);
+  EXPECT_THAT(all.reason, HasSubstr("no error is finite"));
+  EXPECT_TRUE(std::isnan(figure(all, "best_deviation")));
+  const CaseResult some = run(one, beyond(1e-2)).at("small_cloth-central");
+  EXPECT_EQ(some.verdict, Verdict::holds) << some.reason;
+}
+
 TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
   /// A pattern without one of the blocks that the force fills.
   class Sparser final : public Catalog {
@@ -239,6 +259,15 @@ TEST(JacobianStudy, RefusesWhatItCannotDo) {
   EXPECT_THAT(message("[definiteness]\ncompressions = []\nsteps = [0.1]\n" + cloth), HasSubstr("empty list"));
   EXPECT_THAT(message("[runs]\nmethods = [\"verlet\"]\ncompressions = [0.5]\nsteps = [0.1]\n" + cloth),
               HasSubstr("no one-step method"));
+  EXPECT_THAT(message("[runs]\nmethods = [\"rk4\"]\ncompressions = [0.5]\nsteps = [0.1, 1e-12]\n" + cloth),
+              HasSubstr("expected at most 1 000 000 steps"));
+  EXPECT_THAT(message("[springs]\n[derivatives]\nlargest_increment = 1e300\nsmallest_increment = 1e-300\n"),
+              HasSubstr("largest_increment: found 1e+300, expected 1e-20 to 1000"));
+  EXPECT_THAT(message("[springs]\n[derivatives]\nsmallest_increment = 1e-300\n"),
+              HasSubstr("smallest_increment: found 1e-300"));
+  const std::string large_cloth = "[[problem]]\nname = \"small_cloth\"\nparameters = { count = 15 }\n";
+  EXPECT_THAT(message("[definiteness]\n" + grid + large_cloth),
+              HasSubstr("has 675 unknowns, expected at most 600"));
 }
 
 TEST(JacobianStudy, ThinsListsAndSamplesByItsRule) {

@@ -138,6 +138,9 @@ TEST(Propagation, RefusesBadInputBeforeAnythingRuns) {
   EXPECT_THAT(refusal_of(spec("\"rk4\"", "direction = [0, 0, 0]\n"), catalog),
               HasSubstr("expected a direction"));
   EXPECT_THAT(refusal_of(spec("\"sundials:cvode_bdf\""), catalog), HasSubstr("fixed step"));
+  const std::string long_chain = "name = \"linear_chain\"\nparameters = { count = 1001 }\n";
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", "duration = 3600.0\n", long_chain), catalog),
+              HasSubstr("duration: found 60001 states of the 1001 masses"));
 }
 
 }  // namespace

@@ -81,6 +81,20 @@ TEST(WorkPrecision, FailsASchemeThatClaimsAnotherOrder) {
       << find(study, "driven_duffing-right-fixed").reason;
 }
 
+TEST(WorkPrecision, CallsAnOrderAboveTheClaimSuperconvergenceOnLinearProblemsOnly) {
+  Seeds seeds;
+  seeds["too_high"] = [] { return std::make_unique<Renamed>(catalog::make_method("heun3"), 4); };
+  seeds["too_low"] = [] { return std::make_unique<Renamed>(catalog::make_method("heun3"), 2); };
+  const std::string both = "[[problem]]\nname = \"harmonic_oscillator\"\nt_end = 3.1\n" + duffing;
+  MemoryArchive archive;
+  const StudyResult study = run(spec("\"too_high\", \"too_low\"", both), SeededCatalog(seeds), archive);
+  const CaseResult& above = find(study, "harmonic_oscillator-too_low-fixed");
+  EXPECT_EQ(above.verdict, Verdict::not_applicable) << above.reason;
+  EXPECT_THAT(above.reason, HasSubstr("superconvergence on a linear problem"));
+  EXPECT_EQ(find(study, "driven_duffing-too_low-fixed").verdict, Verdict::fails);
+  EXPECT_EQ(find(study, "harmonic_oscillator-too_high-fixed").verdict, Verdict::fails);
+}
+
 TEST(WorkPrecision, SaysNothingOfPowersWhereStepsDoNotResolveTheFastestMotion) {
   MemoryArchive archive;
   const StudyResult study = run(
@@ -159,6 +173,9 @@ TEST(WorkPrecision, NamesTheKeyOfAWrongSetting) {
   for (const auto& [key, message] : {std::pair{"step_ratio = 1.0\n", "step_ratio"},
                                      {"levels = 0\n", "levels"},
                                      {"control = \"none\"\n", "control"},
+                                     {"control = \"adaptive\"\n", "no method that can run"},
+                                     {"start_error = 1e-9\nfinest_error = 1e-3\n", "finest_error"},
+                                     {"start_error = 1e-13\n", "start_error"},
                                      {"reference = \"binary32\"\n", "reference"}}) {
     try {
       plan_of(spec("\"rk4\"", duffing, key), catalog);
