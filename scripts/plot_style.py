@@ -111,6 +111,7 @@ def main(description, choose_drawing, arguments=None):
     formats = options.formats.split(",")
     if not set(formats) <= {"png", "pdf", "svg"}:
         parser.error(f'--formats: found "{options.formats}", expected some of png, pdf, svg')
+    code = 0
     for path in options.files:
         try:
             with ResultFile(path) as result:
@@ -131,8 +132,8 @@ def main(description, choose_drawing, arguments=None):
                     print(written)
         except ResultError as error:
             print(error, file=sys.stderr)
-            return 2
-    return 0
+            code = 2  # the other files are drawn all the same
+    return code
 
 
 def expect_kind(kind, draw):
