@@ -201,7 +201,7 @@ void judge_conservative(const MethodInfo& info, const std::vector<EnergyRun>& ru
 double EnergyRun::relative_drift() const {
   const double change = drift.slope * drift.duration / seen->scale();
   constexpr double largest = 0.2;
-  return std::abs(change) < largest ? change : none;
+  return std::abs(change) < largest && !has_blown_up() ? change : none;
 }
 
 bool EnergyRun::has_blown_up() const {
