@@ -75,6 +75,12 @@ double Drift::significance() const {
   return change == 0.0 ? 0.0 : change / oscillation;
 }
 
+bool Drift::is_significant(std::size_t tests) const {
+  const double quantile =
+      gsl_cdf_tdist_Pinv(1.0 - 0.025 / static_cast<double>(tests), static_cast<double>(batches - 2));
+  return std::abs(slope) > quantile * standard_error;
+}
+
 Drift fit_drift(const BinnedSeries& series, std::uint64_t batches) {
   const std::vector<double> bin_times = series.times(), bin_means = series.means();
   const auto bins = static_cast<std::uint64_t>(bin_means.size());
@@ -103,7 +109,9 @@ Drift fit_drift(const BinnedSeries& series, std::uint64_t batches) {
   double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, sum_squares = 0.0;
   gsl_fit_linear(times.data(), 1, means.data(), 1, n, &intercept, &drift.slope, &cov00, &cov01, &cov11,
                  &sum_squares);
-  const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * std::sqrt(cov11);
+  drift.batches = static_cast<int>(n);
+  drift.standard_error = std::sqrt(cov11);
+  const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * drift.standard_error;
   drift.slope_low = drift.slope - half_width;
   drift.slope_high = drift.slope + half_width;
   drift.duration = times.back() - times.front();

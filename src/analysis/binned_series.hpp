@@ -47,9 +47,14 @@ struct Drift {
   double slope = 0.0;      ///< of the batch means over time
   double slope_low = 0.0;  ///< 95 % interval, Student's t with (batches − 2) degrees of freedom
   double slope_high = 0.0;
-  double oscillation = 0.0;  ///< the median over the batches of half of largest − least
-  double duration = 0.0;     ///< between the first and last batch's mean time
+  double oscillation = 0.0;     ///< the median over the batches of half of largest − least
+  double standard_error = 0.0;  ///< of the slope
+  int batches = 0;
+  double duration = 0.0;  ///< between the first and last batch's mean time
 
+  /// Whether the slope differs from 0 at the level of 5 % of `tests` ≥ 1 slopes together: each is tested at
+  /// 5 %/tests [Bonferroni].
+  bool is_significant(std::size_t tests) const;
   /// |slope|·duration/oscillation: how far the trend stands out; 0 where both vanish.
   double significance() const;
 };

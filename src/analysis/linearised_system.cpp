@@ -1,6 +1,8 @@
 #include "analysis/linearised_system.hpp"
 
+#include "analysis/numerical_jacobian.hpp"
 #include "core/error.hpp"
+#include "ode/functor_system.hpp"
 
 namespace fw::analysis {
 
@@ -10,6 +12,19 @@ void check_tangent(TangentModel model) {
   if (model != TangentModel::exact)
     throw InputError("a linearised system has its exact tangent stiffness only");
 }
+
+/// ẏ = Jy with a dense J.
+struct DenseFlow {
+  Matrix J;
+  template <class S>
+  void operator()(const S&, std::span<const S> y, std::span<S> dydt) const {
+    for (Index i = 0; i < J.rows(); ++i) {
+      S sum(0);
+      for (Index j = 0; j < J.cols(); ++j) sum += S(J(i, j)) * y[static_cast<std::size_t>(j)];
+      dydt[static_cast<std::size_t>(i)] = sum;
+    }
+  }
+};
 
 }  // namespace
 
@@ -152,6 +167,24 @@ void LinearisedSystem::damping(double, ConstVectorRef, ConstVectorRef, SparseMat
 void LinearisedSystem::tangent_product(double t, ConstVectorRef, ConstVectorRef, ConstVectorRef dq,
                                        ConstVectorRef dv, VectorRef out) const {
   force(t, dq, dv, out);
+}
+
+std::shared_ptr<const OdeSystem> homogeneous_part(const std::shared_ptr<const OdeSystem>& system, double t,
+                                                  ConstVectorRef y) {
+  const Vector zero = Vector::Zero(system->size());
+  Vector forcing(system->size());
+  bool is_homogeneous = true;
+  for (const double time : {t, t + 0.37, t + 0.74}) {  // where analysis::is_linear looks
+    system->rhs(time, zero, forcing);
+    is_homogeneous = is_homogeneous && forcing.isZero(0.0);
+  }
+  if (is_homogeneous) return system;
+  if (const SecondOrderSystem* mechanics = system->second_order()) {
+    const Index n = mechanics->degrees_of_freedom();
+    return std::make_shared<const LinearisedSystem>(*mechanics, t, y.head(n), y.tail(n));
+  }
+  return std::make_shared<const FunctorSystem<DenseFlow>>(system->size(),
+                                                          DenseFlow{analytic_jacobian(*system, t, y)});
 }
 
 }  // namespace fw::analysis

@@ -51,4 +51,9 @@ class LinearisedSystem final : public OdeSystem, public SecondOrderSystem {
   std::shared_ptr<const ForceSplitting> splitting_;
 };
 
+/// ẏ = Jy of a linear system ẏ = Jy + g(t): the system itself where g vanishes, else a LinearisedSystem or,
+/// of first order, a dense system with the J at (t, y).
+std::shared_ptr<const OdeSystem> homogeneous_part(const std::shared_ptr<const OdeSystem>& system, double t,
+                                                  ConstVectorRef y);
+
 }  // namespace fw::analysis

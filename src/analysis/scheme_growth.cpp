@@ -131,6 +131,23 @@ double growth_of_steps(const Integrator& integrator, const std::shared_ptr<const
   return spectral_radius(m);
 }
 
+/// x_{n+1} = P x_n + Q x_{n−1} on (x_n, x_{n−1}).
+Matrix companion(const Matrix& P, const Matrix& Q) {
+  const Index n = P.rows();
+  Matrix m(2 * n, 2 * n);
+  m << P, Q, Matrix::Identity(n, n), Matrix::Zero(n, n);
+  return m;
+}
+
+/// Of z̈ = −Wz − Cż with a = h²W, b = hC.
+Matrix verlet_recurrence(LinearRule rule, const Matrix& a, const Matrix& b) {
+  const Index n = a.rows();
+  const Matrix one = Matrix::Identity(n, n);
+  if (rule == LinearRule::verlet_backward_velocity) return companion(2.0 * one - a - b, b - one);
+  const Eigen::PartialPivLU<Matrix> implicit((one + 0.5 * b).eval());
+  return companion(implicit.solve(2.0 * one - a), implicit.solve(0.5 * b - one));
+}
+
 using WideComplex = std::complex<Float128>;
 
 /// |ζ|² − 1 of the principal root of ρ(ζ) = iy σ(ζ), in binary128.
@@ -255,14 +272,19 @@ std::string_view to_string(GrowthBasis basis) {
       return "characteristic polynomial";
     case GrowthBasis::oscillator_matrix:
       return "oscillator matrix";
+    case GrowthBasis::two_step_recurrence:
+      return "two-step recurrence";
+    case GrowthBasis::exponential:
+      return "exp(z)";
     case GrowthBasis::single_steps:
       return "single steps";
   }
   return "";
 }
 
-SchemeGrowth::SchemeGrowth(std::shared_ptr<const Integrator> integrator, const schemes::SchemeData& data)
-    : integrator_(std::move(integrator)), basis_(GrowthBasis::single_steps) {
+SchemeGrowth::SchemeGrowth(std::shared_ptr<const Integrator> integrator, const LinearScheme& scheme)
+    : integrator_(std::move(integrator)), basis_(GrowthBasis::single_steps), rule_(scheme.rule) {
+  const schemes::SchemeData& data = scheme.data;
   if (const auto* tableau = std::get_if<schemes::ButcherTableau>(&data)) {
     basis_ = GrowthBasis::stability_function;
     R_ = schemes::stability_function(*tableau);
@@ -275,6 +297,10 @@ SchemeGrowth::SchemeGrowth(std::shared_ptr<const Integrator> integrator, const s
   } else if (const auto nystrom = nystrom_values(data)) {
     basis_ = GrowthBasis::oscillator_matrix;
     stages_ = std::make_shared<const Stages>(*nystrom);
+  } else if (rule_ == LinearRule::exact) {
+    basis_ = GrowthBasis::exponential;
+  } else if (rule_ != LinearRule::of_coefficients) {
+    basis_ = GrowthBasis::two_step_recurrence;
   }
   grows_at_every_step_ = find_growth_at_every_step(data);
 }
@@ -294,6 +320,9 @@ bool SchemeGrowth::find_growth_at_every_step(const schemes::SchemeData& data) co
     }
     case GrowthBasis::oscillator_matrix:
       return schemes::oscillator_stability(*nystrom_values(data)).interval < shortest_interval;
+    case GrowthBasis::two_step_recurrence:  // Verlet's without damping, stable up to ωh = 2
+    case GrowthBasis::exponential:
+      return false;
     case GrowthBasis::single_steps: {
       const double coarse = of_vibration(0.04, 0.0) - 1.0, fine = of_vibration(0.01, 0.0) - 1.0;
       // Growth that vanishes with a power of the step, not what a solver leaves of its equations.
@@ -309,7 +338,12 @@ double SchemeGrowth::of_eigenvalue(Complex z) const {
       return std::abs((*R_)(z));
     case GrowthBasis::characteristic_polynomial:
       return schemes::amplification(*formula_, z.real(), z.imag());
+    case GrowthBasis::exponential:
+      // Of a scheme for forces f(t, q), nothing is said where there is damping.
+      if (integrator_->info().needs_position_forces && z.real() != 0.0) return not_known;
+      return std::exp(z.real());
     case GrowthBasis::oscillator_matrix:
+    case GrowthBasis::two_step_recurrence:
       break;
     case GrowthBasis::single_steps:
       if (integrator_->info().needs_second_order || carries_more(integrator_->info())) break;
@@ -322,13 +356,17 @@ double SchemeGrowth::of_eigenvalue(Complex z) const {
 double SchemeGrowth::of_vibration(double a, double b) const {
   switch (basis_) {
     case GrowthBasis::stability_function:
-    case GrowthBasis::characteristic_polynomial: {
+    case GrowthBasis::characteristic_polynomial:
+    case GrowthBasis::exponential: {
       const Complex root = std::sqrt(Complex(0.25 * b * b - a));
       return std::max(of_eigenvalue(-0.5 * b + root), of_eigenvalue(-0.5 * b - root));
     }
     case GrowthBasis::oscillator_matrix:
       if (b != 0.0 && !stages_->has_velocity) return not_known;
       return spectral_radius(stages_->of_vibration(a, b));
+    case GrowthBasis::two_step_recurrence:
+      return spectral_radius(
+          Eigen::Matrix2d(verlet_recurrence(rule_, Matrix::Constant(1, 1, a), Matrix::Constant(1, 1, b))));
     case GrowthBasis::single_steps:
       break;
   }
@@ -346,8 +384,10 @@ bool SchemeGrowth::is_of_whole_step(const LinearModes& modes,
   switch (basis_) {
     case GrowthBasis::stability_function:
     case GrowthBasis::characteristic_polynomial:
+    case GrowthBasis::exponential:
       return false;
     case GrowthBasis::oscillator_matrix:
+    case GrowthBasis::two_step_recurrence:
       return system != nullptr && modes.coupling > 0.0 && modes.stiffness.size() > 0;
     case GrowthBasis::single_steps:
       return system != nullptr && (integrator_->info().needs_force_splitting || modes.coupling > 0.0 ||
@@ -356,16 +396,22 @@ bool SchemeGrowth::is_of_whole_step(const LinearModes& modes,
   return false;
 }
 
+bool SchemeGrowth::is_by_eigenvalue() const {
+  return basis_ == GrowthBasis::stability_function || basis_ == GrowthBasis::characteristic_polynomial ||
+         basis_ == GrowthBasis::exponential;
+}
+
 double SchemeGrowth::of_system(const LinearModes& modes, double h,
                                const std::shared_ptr<const OdeSystem>& system) const {
   if (is_of_whole_step(modes, system)) {
     if (basis_ == GrowthBasis::single_steps) return growth_of_steps(*integrator_, system, h);
+    if (basis_ == GrowthBasis::two_step_recurrence)
+      return spectral_radius(verlet_recurrence(rule_, h * h * modes.stiffness, h * modes.damping));
     if (!stages_->has_velocity) return not_known;
     return spectral_radius(stages_->of_system(modes.stiffness, modes.damping, h));
   }
   double largest = 0.0;
-  const bool by_eigenvalue = basis_ == GrowthBasis::stability_function ||
-                             basis_ == GrowthBasis::characteristic_polynomial || modes.vibrations.empty();
+  const bool by_eigenvalue = is_by_eigenvalue() || modes.vibrations.empty();
   const auto consider = [&](double growth) {
     largest = std::isnan(growth) || std::isnan(largest) ? not_known : std::max(largest, growth);
   };
@@ -382,6 +428,7 @@ double SchemeGrowth::of_system(const LinearModes& modes, double h,
 
 std::optional<double> SchemeGrowth::factor_of_decay(double x) const {
   if (basis_ == GrowthBasis::stability_function) return (*R_)({x, 0.0}).real();
+  if (basis_ == GrowthBasis::exponential && !integrator_->info().needs_second_order) return std::exp(x);
   if (basis_ != GrowthBasis::single_steps || integrator_->info().needs_second_order ||
       carries_more(integrator_->info())) {
     return std::nullopt;

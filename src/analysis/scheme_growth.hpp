@@ -17,18 +17,39 @@ enum class GrowthBasis {
   stability_function,         ///< R(z) of the coefficients
   characteristic_polynomial,  ///< ρ(ζ) − zσ(ζ) of a multistep formula
   oscillator_matrix,          ///< stages of a Nyström method or splitting on z̈ = −ω²z − cż
-  single_steps,               ///< the matrix of single steps of the running code
+  two_step_recurrence,        ///< Verlet's x_{n+1} = P x_n + Q x_{n−1}
+  exponential,                ///< e^z of schemes that are exact on linear systems
+  single_steps,  ///< the matrix of single steps of the running code: no prediction, since the runs that it
+                 ///< is held against are made of the same steps
 };
 
-/// "R(z)", "characteristic polynomial", "oscillator matrix", "single steps".
+/// "R(z)", "characteristic polynomial", "oscillator matrix", "two-step recurrence", "exp(z)", "single steps".
 std::string_view to_string(GrowthBasis basis);
+
+/// What a scheme does on linear systems where no coefficients say so.
+enum class LinearRule {
+  of_coefficients,
+  exact,  ///< the solution itself
+  /// Verlet with v_n = (x_{n+1} − x_{n−1})/2h: (1 + hC/2) x_{n+1} = (2 − h²W) x_n − (1 − hC/2) x_{n−1}.
+  verlet_central_velocity,
+  /// Verlet with v_n = (x_n − x_{n−1})/h: x_{n+1} = (2 − h²W − hC) x_n − (1 − hC) x_{n−1}.
+  verlet_backward_velocity,
+};
+
+/// A scheme as linear systems see it.
+struct LinearScheme {
+  schemes::SchemeData data{};  ///< of the scheme that it is on them; std::monostate: see `rule`
+  LinearRule rule = LinearRule::of_coefficients;
+};
 
 /// By how much a scheme multiplies the modes of a linear system in a step: the spectral radius of its step
 /// [Hairer, Wanner 1996, IV.2 and V.1; Hairer, Lubich, Wanner 2006, VIII; van der Houwen, Sommeijer 1987].
 class SchemeGrowth {
  public:
-  /// `data` are the coefficients where the scheme is given by them.
-  SchemeGrowth(std::shared_ptr<const Integrator> integrator, const schemes::SchemeData& data);
+  /// Without coefficients and rule the growth is that of single steps of the code.
+  SchemeGrowth(std::shared_ptr<const Integrator> integrator, const LinearScheme& scheme);
+  SchemeGrowth(std::shared_ptr<const Integrator> integrator, const schemes::SchemeData& data)
+      : SchemeGrowth(std::move(integrator), LinearScheme{data}) {}
 
   GrowthBasis basis() const { return basis_; }
 
@@ -64,9 +85,11 @@ class SchemeGrowth {
   struct Stages;
   double of_single_steps_on_vibration(double a, double b) const;
   bool find_growth_at_every_step(const schemes::SchemeData& data) const;
+  bool is_by_eigenvalue() const;
 
   std::shared_ptr<const Integrator> integrator_;
   GrowthBasis basis_;
+  LinearRule rule_;
   std::optional<schemes::StabilityFunction> R_;
   std::optional<schemes::MultistepFormula> formula_;
   std::shared_ptr<const Stages> stages_;

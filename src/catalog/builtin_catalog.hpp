@@ -20,6 +20,9 @@ class BuiltinCatalog final : public study::Catalog {
   schemes::SchemeData equivalent_scheme(const std::string& call) const override {
     return catalog::equivalent_scheme(call);
   }
+  analysis::LinearScheme linear_scheme(const std::string& call) const override {
+    return catalog::linear_scheme(call);
+  }
   analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
     return catalog::oscillator_theory(call);
   }

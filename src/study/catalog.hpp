@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/oscillator_amplification.hpp"
+#include "analysis/scheme_growth.hpp"
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
 #include "schemes/scheme_data.hpp"
@@ -32,6 +33,10 @@ class Catalog {
   /// The coefficients of the method of a call, or of the scheme that it is on forces f(q) (`verlet` is
   /// velocity Verlet); std::monostate where it is not given by coefficients.
   virtual schemes::SchemeData equivalent_scheme(const std::string& call) const = 0;
+
+  /// What the method of a call is on linear systems, damped or not, by coefficients or a rule from the
+  /// literature; neither where nothing but its own steps would tell.
+  virtual analysis::LinearScheme linear_scheme(const std::string& call) const { return {scheme_data(call)}; }
 
   /// What theory says of the method of a call on linear oscillators; empty where it says nothing.
   virtual analysis::AmplificationFactors oscillator_theory(const std::string& call) const = 0;

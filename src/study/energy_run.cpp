@@ -76,9 +76,14 @@ void judge_growth(const std::vector<EnergyRun>& runs, Findings& findings) {
 template <class Value, class Bound>
 void require_bounded(const std::vector<EnergyRun>& runs, Findings& findings, const std::string& what,
                      Value value, Bound bound) {
-  const EnergyRun* worst = &runs.front();
+  const EnergyRun* worst = nullptr;
   for (const EnergyRun& run : runs) {
-    if (!(value(run) / bound(run) <= value(*worst) / bound(*worst))) worst = &run;
+    if (run.has_blown_up()) continue;
+    if (worst == nullptr || !(value(run) / bound(run) <= value(*worst) / bound(*worst))) worst = &run;
+  }
+  if (worst == nullptr) {
+    findings.note(what + " is not judged: every run blows up");
+    return;
   }
   findings.require(
       value(*worst) <= bound(*worst),
@@ -109,8 +114,8 @@ void judge_momenta(const MethodInfo& info, bool keeps_angular_momentum, const st
 /// A trend that stands out of rounding and of its own interval, and has not used up the energy yet.
 bool is_clear(const EnergyRun& run) {
   const analysis::Drift& drift = run.drift;
-  const double change = std::abs(run.relative_drift());
-  return run.status.ok() && drift.valid && drift.slope_low * drift.slope_high > 0.0 && change < 0.2 &&
+  const double change = std::abs(run.relative_drift());  // NaN beyond 0.2
+  return run.status.ok() && drift.valid && drift.slope_low * drift.slope_high > 0.0 &&
          change > 100.0 * rounding_bound(1.0, run.steps);
 }
 
@@ -119,15 +124,23 @@ void judge_symplectic(const std::vector<EnergyRun>& runs, Findings& findings) {
   bool holds = true;
   for (const EnergyRun& run : runs) {
     const analysis::Drift& drift = run.drift;
+    if (run.has_blown_up()) continue;
+    // Without an oscillation inside the batches there is nothing to hold a trend against.
+    const bool has_short_batches =
+        !drift.valid || run.seen->steps_taken() < 2 * static_cast<std::uint64_t>(drift.batches);
+    if (run.status.ok() && has_short_batches) continue;
     const bool within_rounding =
         std::abs(drift.slope) * drift.duration <= rounding_bound(run.seen->scale(), run.steps);
-    const bool fine =
-        run.status.ok() && drift.valid &&
-        (within_rounding || drift.slope_low * drift.slope_high <= 0.0 || drift.significance() <= 0.1);
+    const bool fine = run.status.ok() && drift.valid &&
+                      (within_rounding || !drift.is_significant(runs.size()) || drift.significance() <= 0.1);
     if (worst == nullptr || !fine || (holds && drift.significance() > worst->drift.significance()))
       worst = &run;
     holds = holds && fine;
     if (!fine) break;
+  }
+  if (worst == nullptr) {
+    findings.note("no secular drift is not judged: every run blows up or has too few steps per batch");
+    return;
   }
   findings.require(
       holds, worst->status.ok()
@@ -171,7 +184,12 @@ void judge_conservative(const MethodInfo& info, const std::vector<EnergyRun>& ru
     judge_exponent("energy drift", exponents.drift, info.order, findings);
   }
   const EnergyRun& first = runs.front();
-  if (first.drift.valid) {
+  if (first.drift.valid && std::isnan(first.relative_drift())) {
+    findings.note(fmt::format(
+        "at h = {:.4g} the energy changes by more than a fifth of its size, so that no rate of drift "
+        "describes it",
+        first.step));
+  } else if (first.drift.valid) {
     findings.note(
         fmt::format("at h = {:.4g} the energy drifts by {:.2g} and oscillates by {:.2g} of its size",
                     first.step, first.relative_drift(), first.drift.oscillation / first.seen->scale()));
@@ -181,7 +199,15 @@ void judge_conservative(const MethodInfo& info, const std::vector<EnergyRun>& ru
 }  // namespace
 
 double EnergyRun::relative_drift() const {
-  return drift.slope * drift.duration / seen->scale();
+  const double change = drift.slope * drift.duration / seen->scale();
+  constexpr double largest = 0.2;
+  return std::abs(change) < largest && !has_blown_up() ? change : none;
+}
+
+bool EnergyRun::has_blown_up() const {
+  constexpr double far = 100.0;
+  return status.code == StatusCode::blow_up || status.code == StatusCode::non_finite ||
+         (seen->start() != 0.0 && !(seen->scale() <= far * std::abs(seen->start())));
 }
 
 EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const Integrator& integrator,
@@ -269,6 +295,14 @@ EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info
         first.step));
   } else {
     judge_conservative(info, runs, exponents, findings);
+  }
+  for (const EnergyRun& run : runs) {
+    if (!run.has_blown_up() || !run.status.ok()) continue;
+    findings.note(
+        fmt::format("h = {:.4g} is left out where bounds are in proportion to the energy, which "
+                    "grows to {:.2g} of its start",
+                    run.step, run.seen->scale() / std::abs(run.seen->start())));
+    break;
   }
   if (watched.is_free) judge_momenta(info, keeps_angular_momentum, runs, findings);
   if (!has_ended_well(runs)) {

@@ -130,7 +130,7 @@ void read_stability(const CheckedTable& spec, const Catalog& catalog, bool quick
       continue;
     }
     methods.push_back(std::make_shared<const StabilityMethod>(
-        StabilityMethod{call, integrator, catalog.scheme_data(call)}));
+        StabilityMethod{call, integrator, catalog.scheme_data(call), catalog.linear_scheme(call)}));
   }
   const CheckedTable quick_table = spec.table_or_empty("quick");
   if (has_regions) {

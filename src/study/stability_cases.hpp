@@ -20,7 +20,8 @@ namespace fw::study {
 struct StabilityMethod {
   std::string call;
   std::shared_ptr<const Integrator> integrator;
-  schemes::SchemeData data;
+  schemes::SchemeData data;       ///< its coefficients
+  analysis::LinearScheme linear;  ///< what it is on linear systems
 };
 
 /// The keys of [regions].
@@ -49,6 +50,9 @@ struct LimitSettings {
 /// The spectrum of a problem: once for a linear one, at several times of its trajectory for a nonlinear one.
 struct ProblemSpectrum {
   bool is_linear = false;
+  /// The problem that J and the runs are taken from: of a linear problem its homogeneous part, ẏ = Jy, since
+  /// forcing moves the solution and its sign, but no limit.
+  std::shared_ptr<const OdeSystem> system;
   std::vector<double> times;
   std::vector<analysis::LinearModes> modes;  ///< at each time
   double spectral_radius = 0.0;              ///< the largest

@@ -22,8 +22,9 @@ class LimitCase {
       : family_(family), method_(method), settings_(settings), context_(context) {}
 
   CaseResult run() {
-    const SchemeGrowth growth(method_.integrator, method_.data);
+    const SchemeGrowth growth(method_.integrator, method_.linear);
     row_.basis = to_string(growth.basis());
+    is_by_steps_ = growth.basis() == analysis::GrowthBasis::single_steps;
     for (const std::shared_ptr<const StabilityProblem>& member : family_.members)
       limits_.push_back(measure_limit(*member, method_, growth, settings_, context_));
     row_.part = is_family() ? "law" : "limit";
@@ -115,6 +116,12 @@ class LimitCase {
       all_hold = fit_laws(reason) && all_hold;
     } else {
       fill_single(limits_.front());
+    }
+    if (is_theory && is_by_steps_) {
+      result_.reason = fmt::format(
+          "no coefficients to predict from; the steps {} their own spectrum (largest deviation {:.2g}): {}",
+          all_hold ? "agree with" : "DISAGREE with", largest, reason);
+      return;
     }
     result_.reason = is_theory ? reason
                      : std::isnan(limits_.front().predicted)
@@ -210,6 +217,7 @@ class LimitCase {
   const RunContext& context_;
   std::vector<StabilityLimit> limits_;
   StabilityRow row_;
+  bool is_by_steps_ = false;
   CaseResult result_;
 };
 

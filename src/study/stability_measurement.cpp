@@ -29,14 +29,17 @@ class LimitMeasurement {
         growth_(growth),
         settings_(settings),
         context_(context),
-        spectrum_(problem.spectrum(settings, context)) {}
+        spectrum_(problem.spectrum(settings, context)),
+        system_(spectrum_.system) {}
 
   StabilityLimit run() {
     StabilityLimit limit;
-    limit.failure = why_not_applicable(method_.integrator->info(), *ivp_.system);
+    limit.failure = why_not_applicable(method_.integrator->info(), *system_);
     if (limit.failure.empty()) limit.failure = spectrum_.failure;
     if (limit.failure.empty() && !(spectrum_.spectral_radius > 0.0))
       limit.failure = "J has no eigenvalue other than 0";
+    if (limit.failure.empty() && spectrum_.is_linear && spectrum_.modes.front().growing > 0)
+      limit.failure = "J has eigenvalues with Re λ > 0: solutions grow, and a step is not to blame for that";
     if (!limit.failure.empty()) return limit;
     limit.predicted = predict();
     if (spectrum_.is_linear) {
@@ -44,7 +47,7 @@ class LimitMeasurement {
     } else {
       observe_trajectory(limit);
     }
-    if (ivp_.system->size() == 1) find_monotone(limit);
+    if (spectrum_.is_linear && system_->size() == 1) find_monotone(limit);
     return limit;
   }
 
@@ -56,9 +59,7 @@ class LimitMeasurement {
     if (context_.is_interrupted()) throw Interrupted{};
   }
 
-  std::shared_ptr<const OdeSystem> exact_system() const {
-    return spectrum_.is_linear ? ivp_.system : nullptr;
-  }
+  std::shared_ptr<const OdeSystem> exact_system() const { return spectrum_.is_linear ? system_ : nullptr; }
 
   double growth_at(const LinearModes& modes, double step) const {
     stop_if_interrupted();
@@ -115,7 +116,7 @@ class LimitMeasurement {
   }
 
   void observe_linear(StabilityLimit& limit) {
-    const GrowthExperiment experiment(method_.integrator, ivp_.system, ivp_.t0, spectrum_.spectral_radius,
+    const GrowthExperiment experiment(method_.integrator, system_, ivp_.t0, spectrum_.spectral_radius,
                                       static_cast<std::uint64_t>(settings_.seed),
                                       [this] { return context_.is_interrupted(); });
     limit.steps = steps_for(limit.predicted);
@@ -158,7 +159,7 @@ class LimitMeasurement {
         critical = k;
       }
     }
-    return GrowthExperiment(method_.integrator, ivp_.system, ivp_.t0, modes.shapes[critical],
+    return GrowthExperiment(method_.integrator, system_, ivp_.t0, modes.shapes[critical],
                             std::sqrt(modes.vibrations[critical].omega_squared),
                             [this] { return context_.is_interrupted(); });
   }
@@ -281,7 +282,7 @@ class LimitMeasurement {
     limit.monotone_observed = analysis::largest_stable_step(
         [&](double step) {
           stop_if_interrupted();
-          return !analysis::changes_sign(*method_.integrator, ivp_.system, step, steps);
+          return !analysis::changes_sign(*method_.integrator, system_, step, steps);
         },
         {.first = first_step * unit(), .ratio = 1.1, .farthest = far * unit(), .resolution = 1e-6});
   }
@@ -292,6 +293,7 @@ class LimitMeasurement {
   const LimitSettings& settings_;
   const RunContext& context_;
   const ProblemSpectrum& spectrum_;
+  std::shared_ptr<const OdeSystem> system_;
 };
 
 }  // namespace

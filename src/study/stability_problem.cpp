@@ -47,6 +47,7 @@ ProblemSpectrum find_spectrum(const Ivp& ivp, const Integrator& tracer, const Li
                               const RunContext& context) {
   ProblemSpectrum spectrum;
   spectrum.is_linear = analysis::is_linear(*ivp.system, ivp.t0, ivp.y0);
+  spectrum.system = spectrum.is_linear ? analysis::homogeneous_part(ivp.system, ivp.t0, ivp.y0) : ivp.system;
   std::vector<Vector> states = {ivp.y0};
   spectrum.times = {ivp.t0};
   if (!spectrum.is_linear) {

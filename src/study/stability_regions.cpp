@@ -144,7 +144,7 @@ CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& 
                            const RunContext& context) {
   CaseResult result;
   StabilityRow row;
-  const SchemeGrowth growth(method.integrator, method.data);
+  const SchemeGrowth growth(method.integrator, method.linear);
   row.part = "region";
   row.method = method.call;
   row.basis = to_string(growth.basis());

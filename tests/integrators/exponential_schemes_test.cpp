@@ -67,6 +67,33 @@ TEST(KrylovPhi, AgreesWithTheDenseFunctionAndStopsEarlyWhereItCan) {
   EXPECT_EQ(small.multiply(apply, b, 1e-12, found, tight).code, StatusCode::linear_solver_failed);
 }
 
+TEST(KrylovPhi, SurvivesRitzValuesOfSmallSpacesThatOverflow) {
+  // q̈ = −Kq − cKq̇ far beyond the stability limit of explicit schemes: the field of values of [0, I; −K, −cK]
+  // reaches to Re z ~ h‖K‖/2.
+  const Index n = 8;
+  Matrix K = Matrix::Zero(n, n);
+  for (Index i = 0; i < n; ++i) {
+    K(i, i) = 4e4;
+    if (i > 0) K(i, i - 1) = K(i - 1, i) = -2e4;
+  }
+  Matrix A(2 * n, 2 * n);
+  A << Matrix::Zero(n, n), Matrix::Identity(n, n), -K, -1e-3 * K;
+  Vector b = Vector::Ones(2 * n);
+  b[3] = -2.0;
+  KrylovPhi phi(2 * n, 40);
+  for (const double h : {0.5, 2.0}) {
+    Vector found(2 * n);
+    int dimension = 0;
+    const Status status = phi.multiply([&](ConstVectorRef w, VectorRef out) { out.noalias() = h * (A * w); },
+                                       b, 1e-10, found, dimension);
+    ASSERT_TRUE(status.ok()) << status.describe();
+    // φ₁(hA) b = (hA)⁻¹ (exp(hA) − 1) b, and exp(hA) by the modes of K.
+    const Matrix exponential = (h * A).exp();
+    const Vector expected = (h * A).partialPivLu().solve(exponential * b - b);
+    EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm()) << h;
+  }
+}
+
 TEST(Gautschi, ConvergesWithOrderTwoWithEveryFilter) {
   for (const TrigonometricFilter filter : filters) {
     expect_claimed_orders(*make_gautschi({.filter = filter}), 150, 8);

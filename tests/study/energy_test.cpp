@@ -174,5 +174,19 @@ TEST(Energy, RefusesBadInputBeforeAnythingRuns) {
   EXPECT_THAT(refusal_of(spec("\"rk4\"", "steps = [0.7]\n", oscillator), catalog), HasSubstr("steps[0]"));
 }
 
+TEST(Energy, IsNotHeldAgainstBoundsThatAnExplodingRunSets) {
+  const StudyResult result = run_study(
+      spec("\"velocity_verlet\"", "steps = [1.1]\nstep_count = 500\n", oscillator), SeededCatalog({}));
+  EXPECT_EQ(result.cases.front().verdict, Verdict::not_applicable) << result.cases.front().reason;
+  EXPECT_THAT(result.cases.front().reason, HasSubstr("blows up"));
+  EXPECT_TRUE(std::isnan(figure(result.cases.front(), "relative_drift")));
+}
+
+TEST(Energy, HasNoSecularDriftToJudgeInAFewSteps) {
+  const StudyResult result = run_study(
+      spec("\"velocity_verlet\"", "steps = [0.1]\nstep_count = 3\n", henon_heiles), SeededCatalog({}));
+  EXPECT_EQ(result.cases.front().verdict, Verdict::not_applicable) << result.cases.front().reason;
+}
+
 }  // namespace
 }  // namespace fw::study

@@ -39,6 +39,11 @@ class SeededCatalog final : public Catalog {
     if (claimed != theory_.end()) return builtin_.equivalent_scheme(claimed->second);
     return seeds_.contains(call) ? schemes::SchemeData{} : builtin_.equivalent_scheme(call);
   }
+  analysis::LinearScheme linear_scheme(const std::string& call) const override {
+    const std::vector<std::string> known = builtin_.method_names();
+    const bool is_new = seeds_.contains(call) && std::find(known.begin(), known.end(), call) == known.end();
+    return is_new ? analysis::LinearScheme{} : builtin_.linear_scheme(call);
+  }
   analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
     const auto claimed = theory_.find(call);
     if (claimed != theory_.end()) return builtin_.oscillator_theory(claimed->second);
