@@ -56,11 +56,27 @@ TEST(SchemeGrowth, OfTheTwoStepVerletSchemesIsThatOfTheirRecurrences) {
     const Complex disc = std::sqrt(Complex(0.25 * p * p + q));
     return std::max(std::abs(0.5 * p + disc), std::abs(0.5 * p - disc));
   };
-  const SchemeGrowth central(integrators::make_verlet(integrators::VerletVelocity::central), {});
-  const SchemeGrowth backward(integrators::make_verlet(integrators::VerletVelocity::backward), {});
+  const SchemeGrowth central(integrators::make_verlet(integrators::VerletVelocity::central), LinearScheme{});
+  const SchemeGrowth backward(integrators::make_verlet(integrators::VerletVelocity::backward),
+                              LinearScheme{});
   for (const auto& [a, b] : {std::pair{0.7, 0.0}, {3.9, 0.0}, {4.3, 0.0}, {1.5, 0.4}, {0.2, 1.1}}) {
     EXPECT_NEAR(central.of_vibration(a, b), root((2 - a) / (1 + b / 2), -(1 - b / 2) / (1 + b / 2)), 1e-8);
     EXPECT_NEAR(backward.of_vibration(a, b), root(2 - a - b, -(1 - b)), 1e-8);
+    // By the rule, without a step of the code.
+    const SchemeGrowth central_rule(integrators::make_verlet(integrators::VerletVelocity::central),
+                                    LinearScheme{{}, LinearRule::verlet_central_velocity});
+    const SchemeGrowth backward_rule(integrators::make_verlet(integrators::VerletVelocity::backward),
+                                     LinearScheme{{}, LinearRule::verlet_backward_velocity});
+    EXPECT_NEAR(central_rule.of_vibration(a, b), central.of_vibration(a, b), 1e-8);
+    EXPECT_NEAR(backward_rule.of_vibration(a, b), backward.of_vibration(a, b), 1e-8);
+  }
+}
+
+TEST(SchemeGrowth, OfAnExactSchemeIsTheExponential) {
+  const SchemeGrowth exact(integrators::make_verlet(integrators::VerletVelocity::central),
+                           LinearScheme{{}, LinearRule::exact});
+  for (const Complex z : {Complex(-0.5, 0.0), Complex(-0.3, 1.2), Complex(0.0, 0.9)}) {
+    EXPECT_NEAR(exact.of_eigenvalue(z), std::exp(z.real()), 1e-12);
   }
 }
 
