@@ -153,8 +153,13 @@ class EnergyCase {
           [](const EnergyObserver& seen) { return seen.angular_change()->largest(); });
     }
     if (problem_.watched.is_damped) {
-      add("work", unit, [](const EnergyObserver& seen) { return seen.work(); });
-      add("balance", unit, [](const EnergyObserver& seen) { return seen.balance(); });
+      // A run that stops early has fewer of them than bins.
+      const auto padded = [](std::vector<double> values, const EnergyObserver& seen) {
+        values.resize(seen.change().times().size(), none);
+        return values;
+      };
+      add("work", unit, [&](const EnergyObserver& seen) { return padded(seen.work(), seen); });
+      add("balance", unit, [&](const EnergyObserver& seen) { return padded(seen.balance(), seen); });
     }
   }
 

@@ -289,10 +289,12 @@ EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info
   if (watched.is_damped) {
     judge_exponent("energy loss minus work of the dampers", exponents.balance,
                    info.order_with_velocity_forces, findings);
-    findings.note(fmt::format(
-        "of {:.3g} {} at the start {:.3g} are lost, the dampers' work leaves {:.2g} open at h = {:.4g}",
-        first.seen->start(), watched.unit, first.seen->work().back(), first.seen->balance().back(),
-        first.step));
+    if (!first.seen->work().empty()) {
+      findings.note(fmt::format(
+          "of {:.3g} {} at the start {:.3g} are lost, the dampers' work leaves {:.2g} open at h = {:.4g}",
+          first.seen->start(), watched.unit, first.seen->work().back(), first.seen->balance().back(),
+          first.step));
+    }
   } else {
     judge_conservative(info, runs, exponents, findings);
   }

@@ -91,6 +91,10 @@ std::vector<StabilityFamily> read_families(const CheckedTable& spec, const Catal
       family.exponent = sections[k].number("exponent");
       if (found[k].parameter.empty())
         sections[k].fail("exponent", "found without vary, expected with it only");
+      if (found[k].values.size() < 3) {
+        sections[k].fail("exponent", fmt::format("found with {} values, expected at least 3 to fit a law to",
+                                                 found[k].values.size()));
+      }
     }
     if (quick) thin_out(found[k], most_members);
     family.label = found[k].label;
