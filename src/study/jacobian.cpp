@@ -311,7 +311,9 @@ void plan_runs(const CheckedTable& spec, const Catalog& catalog, const std::vect
 void read_jacobian(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
   const QuickRule rule = read_quick(spec, quick);
   const bool wants_derivatives = spec.has("derivatives") || spec.has("springs");
-  const DerivativeSpec derivatives = read_derivatives(spec, rule);
+  // Not asked for, the section stays out of the resolved specification: there it would be asked for.
+  const DerivativeSpec derivatives =
+      read_derivatives(wants_derivatives ? spec : CheckedTable::parse_text("", spec.source_name()), rule);
   std::vector<StudyProblem> problems;
   if (!spec.has("springs") || spec.has("problem")) problems = read_problems(spec, catalog, plan.warnings);
   plan_springs(spec, derivatives, rule, plan);
