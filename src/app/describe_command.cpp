@@ -8,17 +8,17 @@
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "catalog/study_kinds.hpp"
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "scene/generators.hpp"
 #include "schemes/property_list.hpp"
-#include "store/json_writer.hpp"
+#include "text/closest_name.hpp"
+#include "text/json_writer.hpp"
 
 namespace fw::app {
 
 namespace {
 
-using store::JsonWriter;
+using text::JsonWriter;
 
 std::string describe_method(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info();

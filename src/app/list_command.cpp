@@ -10,15 +10,15 @@
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "scene/generators.hpp"
-#include "store/json_writer.hpp"
-#include "store/text_table.hpp"
+#include "text/json_writer.hpp"
+#include "text/text_table.hpp"
 
 namespace fw::app {
 
 namespace {
 
-using store::JsonWriter;
-using store::TextTable;
+using text::JsonWriter;
+using text::TextTable;
 
 const std::string oracle_family = "oracle";
 

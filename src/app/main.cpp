@@ -8,10 +8,10 @@
 #include <system_error>
 
 #include "app/commands.hpp"
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
-#include "core/provenance.hpp"
-#include "store/utf8.hpp"
+#include "system/provenance.hpp"
+#include "text/closest_name.hpp"
+#include "text/utf8.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ std::string join_arguments(int argc, char** argv) {
 
 /// One line on standard error, whatever names and messages contain.
 void report(const std::string& message) {
-  fmt::print(stderr, "federwerk: {}\n", fw::store::printable_line(message));
+  fmt::print(stderr, "federwerk: {}\n", fw::text::printable_line(message));
 }
 
 /// "federwerk simulate" if that subcommand was named, else "federwerk".

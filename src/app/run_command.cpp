@@ -15,10 +15,10 @@
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
-#include "core/sha256.hpp"
 #include "store/study_file.hpp"
 #include "store/write_target.hpp"
 #include "study/comparison.hpp"
+#include "system/sha256.hpp"
 
 namespace fw::app {
 

@@ -12,12 +12,12 @@
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
+#include "record/frame_selector.hpp"
 #include "scene/scene.hpp"
 #include "store/mass_spring_quantities.hpp"
 #include "store/trajectory_writer.hpp"
 #include "store/write_target.hpp"
 #include "store/xdmf.hpp"
-#include "study/frame_selector.hpp"
 
 namespace fw::app {
 
@@ -35,7 +35,7 @@ constexpr std::int64_t largest_frame_count = 1'000'000'000;
 /// Passes steps on to the frames, shows progress and listens to the user's interrupt.
 class SimulationObserver final : public Observer {
  public:
-  SimulationObserver(study::FrameSelector& frames, double end_time, const std::atomic<bool>& interrupted)
+  SimulationObserver(record::FrameSelector& frames, double end_time, const std::atomic<bool>& interrupted)
       : frames_(frames), end_time_(end_time), interrupted_(interrupted), bar_("steps") {}
 
   bool observe(const StepView& view) override {
@@ -49,7 +49,7 @@ class SimulationObserver final : public Observer {
   void finish() { bar_.clear(); }
 
  private:
-  study::FrameSelector& frames_;
+  record::FrameSelector& frames_;
   double end_time_;
   const std::atomic<bool>& interrupted_;
   ProgressBar bar_;
@@ -116,7 +116,7 @@ std::string default_output(const SimulateArguments& arguments) {
   return std::filesystem::path(arguments.scene).stem().string() + "-" + method + ".h5";
 }
 
-void print_summary(const std::string& output, const Solution& solution, const study::FrameSelector& frames,
+void print_summary(const std::string& output, const Solution& solution, const record::FrameSelector& frames,
                    std::uint64_t degenerate) {
   fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output,
              frames.written(), solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations,
@@ -189,7 +189,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
       std::holds_alternative<FixedStep>(control) ? std::min(wanted, count.total() + 1) : wanted;
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
                                  static_cast<Index>(expected));
-  study::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, writer);
+  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, writer);
   SimulationObserver observer(frames, arguments.end_time, interrupted);
   Solution solution = integrator->solve(ivp, control, observer);
   observer.finish();

@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cstdio>
 
-#include "analysis/reference_cache.hpp"
+#include "analysis/reference/reference_cache.hpp"
 #include "app/progress_bar.hpp"
 #include "store/study_store.hpp"
-#include "store/text_table.hpp"
 #include "study/runner.hpp"
+#include "text/text_table.hpp"
 
 namespace fw::app {
 
@@ -82,7 +82,7 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
 }
 
 void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<Tally>& tallies) {
-  using Align = store::TextTable::Align;
+  using Align = text::TextTable::Align;
   std::vector<std::string> names, cases, holds, fails, not_applicable, kept, seconds, verdicts;
   for (std::size_t k = 0; k < tallies.size(); ++k) {
     const Tally& tally = tallies[k];
@@ -98,7 +98,7 @@ void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<T
                        : tally.holds > 0 ? "holds"
                                          : "not applicable");
   }
-  store::TextTable table;
+  text::TextTable table;
   table.add_column("study", Align::left, names);
   table.add_column("cases", Align::right, cases);
   table.add_column("hold", Align::right, holds);

@@ -6,14 +6,14 @@
 #include <mutex>
 #include <thread>
 
-#include "analysis/verification.hpp"
+#include "analysis/verification/verification.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
-#include "store/json_writer.hpp"
-#include "store/text_table.hpp"
+#include "text/json_writer.hpp"
+#include "text/text_table.hpp"
 
 namespace fw::app {
 
@@ -81,7 +81,7 @@ std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsi
 }
 
 std::string table(const std::vector<Verification>& results, bool all) {
-  using store::TextTable;
+  using text::TextTable;
   std::vector<std::string> method, property, claimed, derived, measured, verdict, reason;
   std::size_t holds = 0, fails = 0, skipped = 0;
   for (const Verification& result : results) {
@@ -110,7 +110,7 @@ std::string table(const std::vector<Verification>& results, bool all) {
 }
 
 std::string json(const std::vector<Verification>& results) {
-  store::JsonWriter writer;
+  text::JsonWriter writer;
   writer.begin_array();
   for (const Verification& result : results) {
     for (const PropertyCheck& check : result.checks) {

@@ -2,13 +2,13 @@
 
 #include "catalog/method_options.hpp"
 #include "catalog/oracle_methods.hpp"
-#include "core/closest_name.hpp"
 #include "oracles/sundials/arkode.hpp"
 #include "oracles/sundials/arkode_mri.hpp"
 #include "oracles/sundials/ida.hpp"
 #include "schemes/additive_tableaus.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
+#include "text/closest_name.hpp"
 
 namespace fw::catalog {
 

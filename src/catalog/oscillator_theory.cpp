@@ -4,7 +4,7 @@
 
 #include "catalog/method_options.hpp"
 #include "catalog/methods.hpp"
-#include "integrators/generalised_alpha.hpp"
+#include "integrators/structural/generalised_alpha.hpp"
 #include "schemes/chebyshev_recurrence.hpp"
 #include "schemes/composed_tableau.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "analysis/oscillator_amplification.hpp"
-#include "analysis/scheme_growth.hpp"
+#include "analysis/theory/oscillator_amplification.hpp"
+#include "analysis/theory/scheme_growth.hpp"
 
 namespace fw::catalog {
 

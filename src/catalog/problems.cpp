@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "problems/celestial.hpp"
 #include "problems/cloth.hpp"
@@ -12,6 +11,7 @@
 #include "problems/spring_pendulum.hpp"
 #include "problems/stiff_equations.hpp"
 #include "problems/test_equations.hpp"
+#include "text/closest_name.hpp"
 
 namespace fw::catalog {
 

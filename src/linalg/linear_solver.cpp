@@ -4,12 +4,12 @@
 
 #include <sstream>
 
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "linalg/cholmod_solver.hpp"
 #include "linalg/direct_solvers.hpp"
 #include "linalg/krylov_solvers.hpp"
 #include "linalg/petsc_solver.hpp"
+#include "text/closest_name.hpp"
 
 namespace fw::linalg {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "integrators/hermite_interpolant.hpp"
-#include "integrators/run_checks.hpp"
+#include "integrators/loop/hermite_interpolant.hpp"
+#include "integrators/loop/run_checks.hpp"
 
 namespace fw::oracles {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/checked_table.hpp"
 #include "scene/point_groups.hpp"
 #include "scene/scene.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::scene {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/checked_table.hpp"
 #include "scene/lattice.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::scene {
 

@@ -1,9 +1,9 @@
 #include "scene/scene.hpp"
 
-#include "core/checked_table.hpp"
 #include "scene/attachments.hpp"
 #include "scene/explicit_system.hpp"
 #include "scene/generated_system.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::scene {
 namespace {

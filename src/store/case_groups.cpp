@@ -5,15 +5,15 @@
 #include <set>
 #include <string_view>
 
-#include "store/attribute.hpp"
-#include "store/dataset.hpp"
+#include "store/hdf5/attribute.hpp"
+#include "store/hdf5/dataset.hpp"
 
 namespace fw::store {
 
 namespace {
 
+using record::Column;
 using study::CaseResult;
-using study::Column;
 using study::SummaryCell;
 using study::Verdict;
 

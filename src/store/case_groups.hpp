@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "store/hdf5_library.hpp"
+#include "store/hdf5/hdf5_library.hpp"
 #include "study/result.hpp"
 
 namespace fw::store {
@@ -18,6 +18,6 @@ void write_cases(hid_t file, const std::vector<study::CaseResult>& cases);
 std::vector<study::CaseResult> read_cases(hid_t file);
 
 /// The columns of /summary, empty if there is none. Throws LibraryError.
-std::vector<study::Column> read_summary(hid_t file);
+std::vector<record::Column> read_summary(hid_t file);
 
 }  // namespace fw::store

@@ -1,7 +1,7 @@
 #include "store/file_header.hpp"
 
-#include "core/provenance.hpp"
-#include "core/sha256.hpp"
+#include "system/provenance.hpp"
+#include "system/sha256.hpp"
 
 namespace fw::store {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "store/attribute.hpp"
+#include "store/hdf5/attribute.hpp"
 
 namespace fw::store {
 

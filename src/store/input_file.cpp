@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "store/file/seal.hpp"
 #include "store/file_header.hpp"
-#include "store/seal.hpp"
 
 namespace fw::store {
 

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "store/attribute.hpp"
-#include "store/file_driver.hpp"
+#include "store/hdf5/attribute.hpp"
+#include "store/hdf5/file_driver.hpp"
 
 namespace fw::store {
 

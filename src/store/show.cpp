@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "store/json_writer.hpp"
 #include "store/show_content.hpp"
 #include "store/show_table.hpp"
-#include "store/text_table.hpp"
-#include "store/utf8.hpp"
+#include "text/json_writer.hpp"
+#include "text/text_table.hpp"
+#include "text/utf8.hpp"
 
 namespace fw::store {
 
@@ -21,9 +21,9 @@ std::string number_text(double value) {
 }
 
 std::string origin(const std::filesystem::path& path, const Attributes& attributes) {
-  std::string out = printable_line(path.string()) + '\n';
+  std::string out = text::printable_line(path.string()) + '\n';
   const auto line = [&](const char* label, const std::string& text) {
-    if (!text.empty()) out += fmt::format("  {:<9} {}\n", label, printable_line(text));
+    if (!text.empty()) out += fmt::format("  {:<9} {}\n", label, text::printable_line(text));
   };
   const bool dirty = integer_of(attributes, "git_dirty", 0) != 0;
   line("kind", text_of(attributes, "kind"));
@@ -41,10 +41,10 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
 
 /// Whether a column is left out of the table for people: `case` repeats problem and method, and what ends in
 /// _position or _velocity details a column without that ending (its essence is in `reason`).
-bool is_detail(const study::Column& column, const std::vector<study::Column>& columns) {
+bool is_detail(const record::Column& column, const std::vector<record::Column>& columns) {
   const auto has = [&](std::string_view name) {
     return std::any_of(columns.begin(), columns.end(),
-                       [&](const study::Column& other) { return other.name == name; });
+                       [&](const record::Column& other) { return other.name == name; });
   };
   if (column.name == "case") return has("problem") && has("method") && !has("step");
   for (std::string_view ending : {"_position", "_velocity"}) {
@@ -56,11 +56,11 @@ bool is_detail(const study::Column& column, const std::vector<study::Column>& co
 
 std::string words(const StudySummary& summary, const std::vector<std::string>& wanted,
                   const std::string& file) {
-  TextTable table;
+  text::TextTable table;
   std::size_t cases = 0, left_out = 0;
-  const std::vector<study::Column> columns =
+  const std::vector<record::Column> columns =
       wanted.empty() ? summary.columns : pick_columns(summary.columns, wanted, file);
-  for (const study::Column& column : columns) {
+  for (const record::Column& column : columns) {
     if (wanted.empty() && is_detail(column, summary.columns)) {
       ++left_out;
       continue;
@@ -83,7 +83,7 @@ std::string words(const StudySummary& summary, const std::vector<std::string>& w
     cases = cells.size();
     const bool has_unit = !column.unit.empty() && column.unit != "1";
     table.add_column(has_unit ? fmt::format("{} [{}]", column.name, column.unit) : column.name,
-                     text ? TextTable::Align::left : TextTable::Align::right, std::move(cells));
+                     text ? text::TextTable::Align::left : text::TextTable::Align::right, std::move(cells));
   }
   if (cases == 0) return "\nno finished cases\n";
   const std::string more =
@@ -104,8 +104,8 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
   if (summary.frames == 0) return out + '\n';
   out +=
       fmt::format(", t = {} s to {} s\n\n", number_text(summary.time_start), number_text(summary.time_end));
-  TextTable energies;
-  using Align = TextTable::Align;
+  text::TextTable energies;
+  using Align = text::TextTable::Align;
   energies.add_column("energy [J]", Align::left, {"kinetic", "potential", "total"});
   energies.add_column("start", Align::right,
                       {number_text(summary.kinetic_start), number_text(summary.potential_start),
@@ -121,7 +121,7 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
     out += fmt::format(" (relative {}, at most {})", number_text(summary.drift / scale),
                        number_text(summary.largest_drift / scale));
   }
-  TextTable work;
+  text::TextTable work;
   std::vector<std::string> names, counts;
   for (const auto& [name, count] : summary.counters) {
     names.push_back(name == "seconds" ? "seconds [s]" : name);
@@ -132,7 +132,7 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
   return out + "\n\n" + work.text();
 }
 
-void write_json(JsonWriter& json, const StudySummary& summary) {
+void write_json(text::JsonWriter& json, const StudySummary& summary) {
   json.key("summary").begin_array();
   const std::size_t rows =
       summary.columns.empty()
@@ -140,7 +140,7 @@ void write_json(JsonWriter& json, const StudySummary& summary) {
           : std::visit([](const auto& values) { return values.size(); }, summary.columns.front().values);
   for (std::size_t row = 0; row < rows; ++row) {
     json.begin_object();
-    for (const study::Column& column : summary.columns) {
+    for (const record::Column& column : summary.columns) {
       std::visit(
           [&](const auto& values) {
             if (row < values.size()) json.key(column.name).value(values[row]);
@@ -150,14 +150,14 @@ void write_json(JsonWriter& json, const StudySummary& summary) {
     json.end_object();
   }
   json.end_array().key("units").begin_object();
-  for (const study::Column& column : summary.columns) json.key(column.name).value(column.unit);
+  for (const record::Column& column : summary.columns) json.key(column.name).value(column.unit);
   json.end_object().key("verdicts").begin_object();
   json.key("holds").value(summary.verdicts[0]);
   json.key("fails").value(summary.verdicts[1]);
   json.key("not applicable").value(summary.verdicts[2]).end_object();
 }
 
-void write_json(JsonWriter& json, const TrajectorySummary& summary) {
+void write_json(text::JsonWriter& json, const TrajectorySummary& summary) {
   json.key("trajectory").begin_object();
   json.key("frames").value(summary.frames).key("particles").value(summary.particles);
   json.key("springs").value(summary.springs);
@@ -189,7 +189,7 @@ std::string show(const std::filesystem::path& path, const std::vector<std::strin
 }
 
 std::string show_json(const std::filesystem::path& path) {
-  JsonWriter json;
+  text::JsonWriter json;
   json.begin_object().key("file").value(path.string());
   std::visit(
       [&](const auto& content) {

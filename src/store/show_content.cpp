@@ -18,7 +18,7 @@ ShowContent read_show_content(const std::filesystem::path& path) {
   } catch (const LibraryError& error) {
     throw InputError(fmt::format("\"{}\" is damaged: {}", path.string(), error.what()));
   }
-  for (const study::Column& column : summary.columns) {
+  for (const record::Column& column : summary.columns) {
     const auto* texts = std::get_if<std::vector<std::string>>(&column.values);
     if (column.name != "verdict" || texts == nullptr) continue;
     for (const std::string& text : *texts) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <variant>
 
-#include "store/attribute.hpp"
+#include "store/hdf5/attribute.hpp"
 #include "store/trajectory_summary.hpp"
 #include "study/result.hpp"
 
@@ -13,7 +13,7 @@ namespace fw::store {
 /// The summary of a study with its verdicts counted.
 struct StudySummary {
   Attributes attributes;  ///< of the root
-  std::vector<study::Column> columns;
+  std::vector<record::Column> columns;
   std::array<std::int64_t, 3> verdicts{};  ///< holds, fails, not applicable
 };
 

@@ -5,20 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
-#include "store/attribute.hpp"
 #include "store/case_groups.hpp"
-#include "store/dataset.hpp"
+#include "store/hdf5/attribute.hpp"
+#include "store/hdf5/dataset.hpp"
 #include "store/input_file.hpp"
-#include "store/utf8.hpp"
 #include "study/result.hpp"
+#include "text/closest_name.hpp"
+#include "text/utf8.hpp"
 
 namespace fw::store {
 
 namespace {
 
-using study::Column;
+using record::Column;
 
 /// A column whose cells are text already.
 struct TextColumn {
@@ -146,9 +146,9 @@ std::string cell_text(const std::string& value, TableFormat format) {
     for (const char letter : value) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
     return quoted + '"';
   }
-  if (format == TableFormat::latex) return escaped_for_latex(printable_line(value));
+  if (format == TableFormat::latex) return escaped_for_latex(text::printable_line(value));
   std::string piped;
-  for (const char letter : printable_line(value))
+  for (const char letter : text::printable_line(value))
     piped += letter == '|' ? std::string("\\|") : std::string(1, letter);
   return piped;
 }

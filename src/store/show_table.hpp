@@ -31,7 +31,7 @@ std::string show_table(const std::filesystem::path& path, const TableChoice& cho
 
 /// Those of the columns that are named, in that order. Throws InputError that names the file and what is
 /// there.
-std::vector<study::Column> pick_columns(const std::vector<study::Column>& columns,
-                                        const std::vector<std::string>& names, const std::string& file);
+std::vector<record::Column> pick_columns(const std::vector<record::Column>& columns,
+                                         const std::vector<std::string>& names, const std::string& file);
 
 }  // namespace fw::store

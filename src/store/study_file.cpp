@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "store/case_groups.hpp"
+#include "store/file/output_file.hpp"
 #include "store/input_file.hpp"
-#include "store/output_file.hpp"
 
 namespace fw::store {
 

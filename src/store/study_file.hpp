@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "store/attribute.hpp"
 #include "store/file_header.hpp"
+#include "store/hdf5/attribute.hpp"
 #include "study/result.hpp"
 
 namespace fw::store {

@@ -9,9 +9,9 @@
 #include <cerrno>
 #include <system_error>
 
+#include "store/file/temporary_file.hpp"
 #include "store/input_file.hpp"
 #include "store/study_file.hpp"
-#include "store/temporary_file.hpp"
 #include "store/write_target.hpp"
 
 namespace fw::store {

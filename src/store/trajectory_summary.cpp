@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "store/dataset.hpp"
+#include "store/hdf5/dataset.hpp"
 #include "store/input_file.hpp"
 
 namespace fw::store {
@@ -14,7 +14,7 @@ namespace fw::store {
 namespace {
 
 std::vector<double> series(hid_t group, const std::string& name, std::size_t frames) {
-  study::Column column = read_dataset(group, name);
+  record::Column column = read_dataset(group, name);
   auto* values = std::get_if<std::vector<double>>(&column.values);
   if (values == nullptr || values->size() != frames) {
     throw LibraryError(fmt::format("dataset \"{}\" is no series of {} numbers", name, frames));
@@ -71,7 +71,7 @@ TrajectorySummary read_trajectory_summary(const std::filesystem::path& path) {
     read_energies(trajectory, summary);
     const Handle counters = open_group(file.id(), "counters");
     for (const std::string& name : link_names(counters)) {
-      const study::Column column = read_dataset(counters, name);
+      const record::Column column = read_dataset(counters, name);
       std::visit(
           [&]<class T>(const std::vector<T>& values) {
             if constexpr (std::is_arithmetic_v<T>) {

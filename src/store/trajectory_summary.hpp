@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "store/attribute.hpp"
+#include "store/hdf5/attribute.hpp"
 
 namespace fw::store {
 

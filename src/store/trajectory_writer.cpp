@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "store/extendible_dataset.hpp"
-#include "store/output_file.hpp"
+#include "store/file/output_file.hpp"
+#include "store/hdf5/extendible_dataset.hpp"
 
 namespace fw::store {
 

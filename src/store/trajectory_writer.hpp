@@ -8,8 +8,8 @@
 #include "core/vec3.hpp"
 #include "core/work.hpp"
 #include "mechanics/mass_spring_model.hpp"
+#include "record/frame_sink.hpp"
 #include "store/file_header.hpp"
-#include "study/frame_sink.hpp"
 
 namespace fw::store {
 
@@ -29,7 +29,7 @@ using QuantitiesOf = std::function<FrameQuantities(double t, ConstVectorRef q, C
 /// Streams a trajectory of a mass-spring system into a result file of kind "trajectory". Memory is bounded by
 /// a few megabytes whatever the number of frames and particles. The file appears under its name when `finish`
 /// has returned and not before; without `finish` nothing remains.
-class TrajectoryWriter final : public study::FrameSink {
+class TrajectoryWriter final : public record::FrameSink {
  public:
   /// `expected_frames` only sets the size of the chunks. `header.kind` is ignored. Throws SystemError.
   TrajectoryWriter(const std::filesystem::path& path, const FileHeader& header,

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "core/error.hpp"
+#include "store/file/temporary_file.hpp"
 #include "store/input_file.hpp"
-#include "store/temporary_file.hpp"
 
 namespace fw::store {
 

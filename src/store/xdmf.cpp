@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "store/dataset.hpp"
+#include "store/file/temporary_file.hpp"
+#include "store/hdf5/dataset.hpp"
 #include "store/input_file.hpp"
-#include "store/temporary_file.hpp"
-#include "store/utf8.hpp"
+#include "text/utf8.hpp"
 
 namespace fw::store {
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : printable_line(text)) {
+  for (const char c : text::printable_line(text)) {
     switch (c) {
       case '&':
         out += "&amp;";

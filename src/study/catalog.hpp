@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/oscillator_amplification.hpp"
-#include "analysis/scheme_growth.hpp"
+#include "analysis/theory/oscillator_amplification.hpp"
+#include "analysis/theory/scheme_growth.hpp"
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
 #include "schemes/scheme_data.hpp"

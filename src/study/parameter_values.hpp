@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/checked_table.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::study {
 

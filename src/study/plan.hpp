@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/checked_table.hpp"
 #include "study/catalog.hpp"
 #include "study/result.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::study {
 

@@ -10,11 +10,11 @@
 #include <optional>
 
 #include "core/error.hpp"
-#include "core/toml_assignment.hpp"
-#include "core/worker_process.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "scene/scene.hpp"
 #include "study/parameter_values.hpp"
+#include "system/worker_process.hpp"
+#include "text/toml_assignment.hpp"
 
 namespace fw::study {
 

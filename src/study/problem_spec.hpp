@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/checked_table.hpp"
 #include "problems/problem.hpp"
 #include "study/catalog.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::study {
 

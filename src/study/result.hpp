@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "record/column.hpp"
+
 namespace fw::study {
 
 /// The outcome of a case against what theory predicts.
@@ -15,19 +17,8 @@ enum class Verdict { holds, fails, not_applicable };
 /// "holds", "fails", "not applicable".
 std::string_view to_string(Verdict verdict);
 
-/// Values of one column; text is UTF-8.
-using ColumnValues = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>>;
-
-/// A named array with a unit ("1" where it has no dimension, "" for text). `shape` is row-major; empty means
-/// one dimension with as many entries as there are values. `attributes` are further facts, for example the
-/// norm.
-struct Column {
-  std::string name;
-  std::string unit;
-  ColumnValues values;
-  std::vector<std::uint64_t> shape;
-  std::vector<std::pair<std::string, std::string>> attributes;
-};
+using record::Column;
+using record::ColumnValues;
 
 /// One cell of a summary row.
 struct SummaryCell {

@@ -15,10 +15,10 @@
 #include <system_error>
 
 #include "core/error.hpp"
-#include "core/sha256.hpp"
-#include "core/worker_process.hpp"
 #include "linalg/petsc_running.hpp"
 #include "study/case_message.hpp"
+#include "system/sha256.hpp"
+#include "system/worker_process.hpp"
 
 namespace fw::study {
 

@@ -1,7 +1,7 @@
 #include "study/shared_problem.hpp"
 
-#include "analysis/binary64_reference.hpp"
-#include "analysis/reference_cache.hpp"
+#include "analysis/reference/binary64_reference.hpp"
+#include "analysis/reference/reference_cache.hpp"
 
 namespace fw::study {
 

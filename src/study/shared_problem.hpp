@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "study/plan.hpp"
 #include "study/problem_spec.hpp"
 

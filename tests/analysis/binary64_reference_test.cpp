@@ -1,10 +1,10 @@
-#include "analysis/binary64_reference.hpp"
+#include "analysis/reference/binary64_reference.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "analysis/stiffness_measures.hpp"
+#include "analysis/theory/stiffness_measures.hpp"
 #include "problems/celestial.hpp"
 #include "problems/linear_chain.hpp"
 

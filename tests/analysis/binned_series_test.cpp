@@ -1,4 +1,4 @@
-#include "analysis/binned_series.hpp"
+#include "analysis/fit/binned_series.hpp"
 
 #include <gtest/gtest.h>
 

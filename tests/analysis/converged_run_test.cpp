@@ -1,4 +1,4 @@
-#include "analysis/converged_run.hpp"
+#include "analysis/reference/converged_run.hpp"
 
 #include <gtest/gtest.h>
 

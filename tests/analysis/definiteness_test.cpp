@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "analysis/definiteness.hpp"
-#include "analysis/numerical_jacobian.hpp"
+#include "analysis/theory/definiteness.hpp"
+#include "analysis/theory/numerical_jacobian.hpp"
 #include "problems/oscillators.hpp"
 #include "problems/stiff_equations.hpp"
 

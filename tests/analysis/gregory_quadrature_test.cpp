@@ -1,4 +1,4 @@
-#include "analysis/gregory_quadrature.hpp"
+#include "analysis/fit/gregory_quadrature.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/influence_front.hpp"
+#include "analysis/theory/influence_front.hpp"
 
 #include <gtest/gtest.h>
 

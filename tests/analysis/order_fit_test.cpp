@@ -1,4 +1,4 @@
-#include "analysis/order_fit.hpp"
+#include "analysis/fit/order_fit.hpp"
 
 #include <gtest/gtest.h>
 

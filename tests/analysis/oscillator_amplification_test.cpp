@@ -1,10 +1,10 @@
-#include "analysis/oscillator_amplification.hpp"
+#include "analysis/theory/oscillator_amplification.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "integrators/generalised_alpha.hpp"
+#include "integrators/structural/generalised_alpha.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
 #include "schemes/multistep_formulas.hpp"

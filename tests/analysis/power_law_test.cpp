@@ -1,4 +1,4 @@
-#include "analysis/power_law.hpp"
+#include "analysis/fit/power_law.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/reference_cache.hpp"
+#include "analysis/reference/reference_cache.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 
 #include <gtest/gtest.h>
 

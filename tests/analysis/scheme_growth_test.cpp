@@ -1,4 +1,4 @@
-#include "analysis/scheme_growth.hpp"
+#include "analysis/theory/scheme_growth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/linearised_system.hpp"
-#include "analysis/stability_limit.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/linear_multistep.hpp"
-#include "integrators/splitting.hpp"
-#include "integrators/verlet.hpp"
+#include "analysis/theory/linearised_system.hpp"
+#include "analysis/theory/stability_limit.hpp"
+#include "integrators/special/verlet.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
+#include "integrators/tableau/linear_multistep.hpp"
+#include "integrators/tableau/splitting.hpp"
 #include "problems/cloth.hpp"
 #include "problems/linear_chain.hpp"
 #include "schemes/explicit_tableaus.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/stiff_order.hpp"
+#include "analysis/theory/stiff_order.hpp"
 
 #include <gtest/gtest.h>
 

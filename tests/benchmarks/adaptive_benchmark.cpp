@@ -9,7 +9,7 @@
 
 #include "benchmarks/cloth.hpp"
 #include "benchmarks/petsc_runge_kutta.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/high_order_explicit_tableaus.hpp"
 

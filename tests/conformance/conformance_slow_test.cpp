@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "analysis/verification.hpp"
+#include "analysis/verification/verification.hpp"
 #include "catalog/methods.hpp"
 
 namespace fw::catalog {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "conformance/altered_system.hpp"
-#include "integrators/adaptive_integrator.hpp"
+#include "integrators/loop/adaptive_integrator.hpp"
 
 namespace fw::conformance {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "analysis/verification.hpp"
+#include "analysis/verification/verification.hpp"
 
 namespace fw::conformance {
 namespace {

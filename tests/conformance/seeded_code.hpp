@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "conformance/seeded_engines.hpp"
-#include "integrators/alpha_family.hpp"
-#include "integrators/average_vector_field.hpp"
-#include "integrators/diagonally_implicit_runge_kutta.hpp"
-#include "integrators/generalised_alpha.hpp"
-#include "integrators/newmark.hpp"
+#include "integrators/energy_momentum/average_vector_field.hpp"
+#include "integrators/structural/alpha_family.hpp"
+#include "integrators/structural/generalised_alpha.hpp"
+#include "integrators/structural/newmark.hpp"
+#include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
 #include "mechanics/mass_spring_system.hpp"
 
 namespace fw::conformance {

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "conformance/seeded_bug.hpp"
-#include "integrators/additive_runge_kutta.hpp"
-#include "integrators/diagonally_implicit_runge_kutta.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/fully_implicit_runge_kutta.hpp"
-#include "integrators/linear_multistep.hpp"
-#include "integrators/nystrom.hpp"
-#include "integrators/rosenbrock.hpp"
-#include "integrators/splitting.hpp"
+#include "integrators/tableau/additive_runge_kutta.hpp"
+#include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
+#include "integrators/tableau/fully_implicit_runge_kutta.hpp"
+#include "integrators/tableau/linear_multistep.hpp"
+#include "integrators/tableau/nystrom.hpp"
+#include "integrators/tableau/rosenbrock.hpp"
+#include "integrators/tableau/splitting.hpp"
 #include "schemes/splitting_schemes.hpp"
 
 namespace fw::conformance {

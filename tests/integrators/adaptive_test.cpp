@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
 #include "ode/functor_system.hpp"
 #include "schemes/explicit_tableaus.hpp"
 

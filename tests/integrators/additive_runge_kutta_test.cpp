@@ -1,4 +1,4 @@
-#include "integrators/additive_runge_kutta.hpp"
+#include "integrators/tableau/additive_runge_kutta.hpp"
 
 #include <gtest/gtest.h>
 

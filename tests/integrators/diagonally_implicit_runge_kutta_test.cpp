@@ -1,4 +1,4 @@
-#include "integrators/diagonally_implicit_runge_kutta.hpp"
+#include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "integrators/average_vector_field.hpp"
-#include "integrators/discrete_gradient.hpp"
+#include "integrators/energy_momentum/average_vector_field.hpp"
+#include "integrators/energy_momentum/discrete_gradient.hpp"
 #include "order_levels.hpp"
 
 namespace fw::integrators {

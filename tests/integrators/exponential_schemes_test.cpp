@@ -3,9 +3,9 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "core/error.hpp"
-#include "integrators/exponential_rosenbrock_euler.hpp"
-#include "integrators/gautschi.hpp"
-#include "integrators/krylov_phi.hpp"
+#include "integrators/exponential/exponential_rosenbrock_euler.hpp"
+#include "integrators/exponential/gautschi.hpp"
+#include "integrators/exponential/krylov_phi.hpp"
 #include "order_levels.hpp"
 
 namespace fw::integrators {

@@ -1,4 +1,4 @@
-#include "integrators/fully_implicit_runge_kutta.hpp"
+#include "integrators/tableau/fully_implicit_runge_kutta.hpp"
 
 #include <gtest/gtest.h>
 

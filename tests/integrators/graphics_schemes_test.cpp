@@ -1,7 +1,7 @@
 #include "core/error.hpp"
-#include "integrators/discrete_gradient.hpp"
-#include "integrators/projective_dynamics.hpp"
-#include "integrators/xpbd.hpp"
+#include "integrators/energy_momentum/discrete_gradient.hpp"
+#include "integrators/graphics/projective_dynamics.hpp"
+#include "integrators/graphics/xpbd.hpp"
 #include "order_levels.hpp"
 
 namespace fw::integrators {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/order_fit.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
+#include "analysis/fit/order_fit.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
 #include "ode/functor_system.hpp"
 #include "schemes/explicit_tableaus.hpp"
 

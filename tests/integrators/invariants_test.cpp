@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "allocation_counter.hpp"
-#include "integrators/runge_kutta_chebyshev.hpp"
+#include "integrators/tableau/runge_kutta_chebyshev.hpp"
 #include "network.hpp"
 
 namespace fw::integrators {

@@ -1,10 +1,10 @@
-#include "integrators/linear_multistep.hpp"
+#include "integrators/tableau/linear_multistep.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "core/error.hpp"
-#include "integrators/starting_steps.hpp"
+#include "integrators/loop/starting_steps.hpp"
 #include "order_levels.hpp"
 #include "schemes/multistep_formulas.hpp"
 

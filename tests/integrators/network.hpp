@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "integrators/diagonally_implicit_runge_kutta.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
-#include "integrators/fully_implicit_runge_kutta.hpp"
-#include "integrators/implicit_euler_linearised.hpp"
-#include "integrators/nystrom.hpp"
-#include "integrators/rosenbrock.hpp"
-#include "integrators/splitting.hpp"
-#include "integrators/verlet.hpp"
+#include "integrators/special/implicit_euler_linearised.hpp"
+#include "integrators/special/verlet.hpp"
+#include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
+#include "integrators/tableau/fully_implicit_runge_kutta.hpp"
+#include "integrators/tableau/nystrom.hpp"
+#include "integrators/tableau/rosenbrock.hpp"
+#include "integrators/tableau/splitting.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/random_model.hpp"
 #include "schemes/explicit_tableaus.hpp"

@@ -1,4 +1,4 @@
-#include "integrators/nystrom.hpp"
+#include "integrators/tableau/nystrom.hpp"
 
 #include <gtest/gtest.h>
 

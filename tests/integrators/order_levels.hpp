@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/order_fit.hpp"
-#include "analysis/reference_solution.hpp"
+#include "analysis/fit/order_fit.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "network.hpp"
 #include "ode/functor_system.hpp"
 

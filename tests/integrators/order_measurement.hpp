@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/gragg_extrapolation.hpp"
-#include "analysis/order_fit.hpp"
+#include "analysis/fit/order_fit.hpp"
+#include "analysis/reference/gragg_extrapolation.hpp"
 #include "ode/functor_system.hpp"
 #include "ode/integrator.hpp"
 

@@ -1,4 +1,4 @@
-#include "integrators/r_respa.hpp"
+#include "integrators/special/r_respa.hpp"
 
 #include "core/error.hpp"
 #include "order_levels.hpp"

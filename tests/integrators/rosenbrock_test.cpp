@@ -1,4 +1,4 @@
-#include "integrators/rosenbrock.hpp"
+#include "integrators/tableau/rosenbrock.hpp"
 
 #include <gtest/gtest.h>
 

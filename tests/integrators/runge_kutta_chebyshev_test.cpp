@@ -1,4 +1,4 @@
-#include "integrators/runge_kutta_chebyshev.hpp"
+#include "integrators/tableau/runge_kutta_chebyshev.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "integrators/splitting.hpp"
+#include "integrators/tableau/splitting.hpp"
 
 #include <gtest/gtest.h>
 

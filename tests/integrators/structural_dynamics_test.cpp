@@ -1,8 +1,8 @@
 
 #include "core/error.hpp"
-#include "integrators/generalised_alpha.hpp"
-#include "integrators/hht_alpha.hpp"
-#include "integrators/newmark.hpp"
+#include "integrators/structural/generalised_alpha.hpp"
+#include "integrators/structural/hht_alpha.hpp"
+#include "integrators/structural/newmark.hpp"
 #include "order_levels.hpp"
 
 namespace fw::integrators {

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "integrators/step_matrix.hpp"
+#include "integrators/implicit/step_matrix.hpp"
 #include "mechanics/mass_spring_system.hpp"
 
 namespace fw::linalg {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "integrators/explicit_runge_kutta.hpp"
+#include "integrators/tableau/explicit_runge_kutta.hpp"
 #include "ode/functor_system.hpp"
 #include "schemes/explicit_tableaus.hpp"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/gauss_collocation.hpp"
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "problems/digits.hpp"
 #include "problems/every_problem.hpp"
 

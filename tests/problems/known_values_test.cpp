@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "problems/digits.hpp"
 #include "problems/every_problem.hpp"
 

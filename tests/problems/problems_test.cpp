@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "problems/every_problem.hpp"
 #include "problems/parameter.hpp"

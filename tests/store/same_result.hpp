@@ -28,7 +28,7 @@ inline ::testing::AssertionResult same(const study::CaseResult& a, const study::
   if (a.verdict != b.verdict || a.reason != b.reason) return differ() << "verdict or reason";
   if (a.columns.size() != b.columns.size()) return differ() << "number of columns";
   for (std::size_t i = 0; i < a.columns.size(); ++i) {
-    const study::Column &c = a.columns[i], &d = b.columns[i];
+    const record::Column &c = a.columns[i], &d = b.columns[i];
     if (c.name != d.name || c.unit != d.unit || c.shape != d.shape || c.attributes != d.attributes) {
       return differ() << "column " << c.name;
     }

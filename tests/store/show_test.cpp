@@ -8,12 +8,12 @@
 #include "core/error.hpp"
 #include "samples.hpp"
 #include "scratch_directory.hpp"
-#include "store/json_writer.hpp"
 #include "store/show_table.hpp"
 #include "store/study_file.hpp"
-#include "store/text_table.hpp"
 #include "store/trajectory_summary.hpp"
-#include "store/utf8.hpp"
+#include "text/json_writer.hpp"
+#include "text/text_table.hpp"
+#include "text/utf8.hpp"
 
 namespace fw::store::test {
 namespace {
@@ -23,10 +23,10 @@ using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 TEST(TextTable, AlignsNumbersRightAndTextLeftCountingUmlautsOnce) {
-  TextTable table;
-  table.add_column("name", TextTable::Align::left, {"Übergröße", "x"});
-  table.add_column("order", TextTable::Align::right, {"4", "10.25"});
-  table.add_column("reason", TextTable::Align::left, {"a\nb", ""});
+  text::TextTable table;
+  table.add_column("name", text::TextTable::Align::left, {"Übergröße", "x"});
+  table.add_column("order", text::TextTable::Align::right, {"4", "10.25"});
+  table.add_column("reason", text::TextTable::Align::left, {"a\nb", ""});
   EXPECT_EQ(table.text(),
             "name       order  reason\n"
             "---------  -----  ------\n"
@@ -35,16 +35,17 @@ TEST(TextTable, AlignsNumbersRightAndTextLeftCountingUmlautsOnce) {
 }
 
 TEST(Utf8, ReplacesWhatIsNotUtf8AndKeepsTheRest) {
-  EXPECT_EQ(valid_utf8("aü€𝄞"), "aü€𝄞");
-  EXPECT_EQ(valid_utf8("a\xFFz"), "a\uFFFDz");
-  EXPECT_EQ(valid_utf8("\xC0\xAF"), "\uFFFD\uFFFD") << "overlong";
-  EXPECT_EQ(valid_utf8("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD") << "surrogate";
-  EXPECT_EQ(valid_utf8("\xE2\x82"), "\uFFFD\uFFFD") << "cut short";
-  EXPECT_EQ(printable_line("a\x1b[31mb\u009bc"), "a [31mb c") << "no escape sequences reach the terminal";
+  EXPECT_EQ(text::valid_utf8("aü€𝄞"), "aü€𝄞");
+  EXPECT_EQ(text::valid_utf8("a\xFFz"), "a\uFFFDz");
+  EXPECT_EQ(text::valid_utf8("\xC0\xAF"), "\uFFFD\uFFFD") << "overlong";
+  EXPECT_EQ(text::valid_utf8("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD") << "surrogate";
+  EXPECT_EQ(text::valid_utf8("\xE2\x82"), "\uFFFD\uFFFD") << "cut short";
+  EXPECT_EQ(text::printable_line("a\x1b[31mb\u009bc"), "a [31mb c")
+      << "no escape sequences reach the terminal";
 }
 
 TEST(JsonWriter, NestsEscapesAndWritesNullForNan) {
-  JsonWriter json;
+  text::JsonWriter json;
   json.begin_object().key("a\"b").value("x\\\n\x01").key("list").begin_array();
   json.value(4.0)
       .value(1e300)

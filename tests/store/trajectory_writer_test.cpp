@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
-#include "core/provenance.hpp"
-#include "core/sha256.hpp"
 #include "samples.hpp"
 #include "scratch_directory.hpp"
-#include "store/dataset.hpp"
+#include "store/hdf5/dataset.hpp"
 #include "store/input_file.hpp"
+#include "system/provenance.hpp"
+#include "system/sha256.hpp"
 
 namespace fw::store::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/agreement.hpp"
+#include "study/kinds/agreement.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "study/convergence.hpp"
+#include "study/kinds/convergence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "study/dissipation.hpp"
+#include "study/kinds/dissipation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <sys/resource.h>
 
 #include "catalog/builtin_catalog.hpp"
-#include "study/energy_observer.hpp"
+#include "study/energy/energy_observer.hpp"
 #include "study_of_text.hpp"
 
 // Not for the sanitizer run, whose own memory would be measured.

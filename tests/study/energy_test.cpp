@@ -1,4 +1,4 @@
-#include "study/energy.hpp"
+#include "study/energy/energy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "study/frame_selector.hpp"
+#include "record/frame_selector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace fw::study {
 namespace {
 
-class Frames final : public FrameSink {
+class Frames final : public record::FrameSink {
  public:
   void frame(double time, ConstVectorRef state) override {
     times.push_back(time);
@@ -26,7 +26,7 @@ Frames frames_of(const Integrator& integrator, const StepControl& control, std::
   Problem problem = problems::harmonic_oscillator();
   problem.ivp.t1 = end;
   Frames frames;
-  FrameSelector selector(0.0, end, control, count, frames);
+  record::FrameSelector selector(0.0, end, control, count, frames);
   EXPECT_TRUE(integrator.solve(problem.ivp, control, selector).status.ok());
   EXPECT_EQ(selector.written(), selector.expected());
   return frames;
@@ -82,7 +82,7 @@ TEST(FrameSelector, InterpolatesAdaptiveRunsAtEqualSpacing) {
 
 TEST(FrameSelector, RefusesFewerThanTwoFrames) {
   Frames frames;
-  EXPECT_THROW(FrameSelector(0.0, 1.0, FixedStep{.step = 0.1}, 1, frames), InputError);
+  EXPECT_THROW(record::FrameSelector(0.0, 1.0, FixedStep{.step = 0.1}, 1, frames), InputError);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "memory_archive.hpp"
-#include "study/jacobian.hpp"
-#include "study/printed_stiffness.hpp"
+#include "study/jacobian/jacobian.hpp"
+#include "study/jacobian/printed_stiffness.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {

@@ -9,7 +9,7 @@
 #include "linalg/linear_solver.hpp"
 #include "memory_archive.hpp"
 #include "seeded_catalog.hpp"
-#include "study/linear_solver.hpp"
+#include "study/linear_solver/linear_solver.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {

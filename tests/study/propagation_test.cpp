@@ -1,4 +1,4 @@
-#include "study/propagation.hpp"
+#include "study/propagation/propagation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "integrators/stepper.hpp"
+#include "integrators/loop/stepper.hpp"
 
 namespace fw::study {
 

@@ -1,4 +1,4 @@
-#include "study/stability.hpp"
+#include "study/stability/stability.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "study/stiffness.hpp"
+#include "study/stiffness/stiffness.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include "core/error.hpp"
 #include "memory_archive.hpp"
 #include "seeded_catalog.hpp"
+#include "study/measure/work_columns.hpp"
 #include "study/runner.hpp"
-#include "study/work_columns.hpp"
 
 namespace fw::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/sweep.hpp"
+#include "study/kinds/sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

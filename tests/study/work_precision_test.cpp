@@ -1,4 +1,4 @@
-#include "study/work_precision.hpp"
+#include "study/work_precision/work_precision.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/closest_name.hpp"
 #include "core/error.hpp"
 #include "oracles/petsc/ts_stepper.hpp"
+#include "text/closest_name.hpp"
 
 namespace fw::oracles {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "integrators/initial_step.hpp"
+#include "integrators/loop/initial_step.hpp"
 
 namespace fw::oracles {
 

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/closest_name.hpp"
 #include "oracles/sundials/arkode_table_names.hpp"
 #include "schemes/order_conditions.hpp"
+#include "text/closest_name.hpp"
 
 namespace fw::oracles {
 

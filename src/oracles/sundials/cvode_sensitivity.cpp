@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "integrators/mass_spring_access.hpp"
+#include "integrators/loop/mass_spring_access.hpp"
 #include "oracles/sundials/cvode_session.hpp"
 #include "oracles/sundials/eigen_vector.hpp"
 

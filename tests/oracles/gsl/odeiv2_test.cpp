@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "integrators/network.hpp"
 #include "integrators/order_measurement.hpp"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "integrators/order_measurement.hpp"
 #include "ode/functor_system.hpp"

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "integrators/additive_runge_kutta.hpp"
 #include "integrators/network.hpp"
+#include "integrators/tableau/additive_runge_kutta.hpp"
 #include "ode/functor_system.hpp"
 #include "oracles/sundials/ark_step_memory.hpp"
 #include "oracles/sundials/arkode.hpp"

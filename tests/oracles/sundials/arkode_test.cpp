@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "failing_systems.hpp"
 #include "integrators/implicit_problems.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/reference_solution.hpp"
+#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "integrators/network.hpp"
 #include "ode/functor_system.hpp"

@@ -1,0 +1,182 @@
+#include "analysis/theory/stability_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace fw::analysis {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Small, so that a scheme's own bound on the size of a state is far away.
+constexpr double amplitude = 1e-6;
+/// Growth beyond this needs no more steps to be seen.
+constexpr double clear_growth = 1e20;
+/// What has decayed so far is stable; numbers near the smallest ones would lose their digits next.
+constexpr double vanishing = 1e-100;
+
+class QuarterMaxima final : public Observer {
+ public:
+  QuarterMaxima(const Vector& weight, std::int64_t steps, const std::function<bool()>& is_interrupted)
+      : weight_(weight), steps_(static_cast<std::uint64_t>(steps)), is_interrupted_(is_interrupted) {}
+
+  bool observe(const StepView& view) override {
+    const double norm = weight_.cwiseProduct(view.state).norm();
+    if (view.index == 0) start_ = norm;
+    const std::uint64_t quarter = std::min<std::uint64_t>(3, 4 * view.index / (steps_ + 1));
+    maximum_[quarter] = std::max(maximum_[quarter], norm);
+    last_ = view.index;
+    if (norm > clear_growth * start_) has_blown_up_ = true;
+    if (norm < vanishing * start_) has_vanished_ = true;
+    interrupted_ = is_interrupted_ && is_interrupted_();
+    return !has_blown_up_ && !has_vanished_ && !interrupted_;
+  }
+
+  bool interrupted() const { return interrupted_; }
+  bool has_blown_up() const { return has_blown_up_; }
+  double maximum(int quarter) const { return maximum_[quarter]; }
+
+ private:
+  const Vector& weight_;
+  std::uint64_t steps_, last_ = 0;
+  const std::function<bool()>& is_interrupted_;
+  double start_ = 0.0;
+  double maximum_[4] = {0.0, 0.0, 0.0, 0.0};
+  bool has_blown_up_ = false, has_vanished_ = false, interrupted_ = false;
+};
+
+class SignWatch final : public Observer {
+ public:
+  bool observe(const StepView& view) override {
+    if (view.index == 0) start_ = view.state[0];
+    if (view.state[0] * start_ < 0.0) changed_ = true;
+    return !changed_ && view.state[0] != 0.0;
+  }
+  bool changed() const { return changed_; }
+
+ private:
+  double start_ = 0.0;
+  bool changed_ = false;
+};
+
+}  // namespace
+
+double LimitSearch::next(double step) const {
+  double factor = ratio;
+  if (std::isfinite(watched)) {
+    const double place = step / watched;
+    constexpr double slack = 1.0 - 1e-9;  // of steps that should lie on the borders
+    if (place >= 0.997 * slack && place < 1.004) {
+      factor = std::min(factor, 1.0005);
+    } else if (place >= 0.98 * slack && place < 1.02) {
+      factor = std::min(factor, 1.0025);
+    } else if (place >= 0.7 * slack && place < 0.98) {
+      factor = std::min({factor, 1.02, 0.98 / place});
+    } else if (place < 0.7) {
+      factor = std::min(factor, 0.7 / place);
+    }
+  }
+  return std::min(step * factor, farthest);
+}
+
+double largest_stable_step(const std::function<bool(double)>& is_stable, const LimitSearch& search) {
+  double good = 0.0, bad = 0.0;
+  if (is_stable(search.first)) {
+    good = search.first;
+    for (double step = good;;) {
+      if (step >= search.farthest) return infinity;
+      step = search.next(step);
+      if (!is_stable(step)) {
+        bad = step;
+        break;
+      }
+      good = step;
+    }
+  } else {
+    bad = search.first;
+    for (double step = 0.5 * bad; step >= search.first / 64.0; step *= 0.5) {
+      if (is_stable(step)) {
+        good = step;
+        break;
+      }
+      bad = step;
+    }
+    if (good == 0.0) return 0.0;
+  }
+  while (bad - good > search.resolution * bad) {
+    const double middle = 0.5 * (good + bad);
+    (is_stable(middle) ? good : bad) = middle;
+  }
+  return 0.5 * (good + bad);
+}
+
+GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
+                                   std::shared_ptr<const OdeSystem> system, double t0, double frequency,
+                                   std::uint64_t seed, std::function<bool()> is_interrupted)
+    : integrator_(std::move(integrator)),
+      system_(std::move(system)),
+      t0_(t0),
+      start_(system_->size()),
+      weight_(Vector::Ones(system_->size())),
+      is_interrupted_(std::move(is_interrupted)) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (Index i = 0; i < start_.size(); ++i) start_[i] = amplitude * uniform(random);
+  const SecondOrderSystem* second_order = system_->second_order();
+  if (second_order == nullptr) return;
+  const Index n = second_order->degrees_of_freedom();
+  weight_.head(n).setConstant(frequency);
+  start_.tail(n) *= frequency;
+  for (Index i = 0; i < n; ++i) {
+    if (second_order->fixed()[static_cast<std::size_t>(i)]) start_[i] = start_[n + i] = 0.0;
+  }
+}
+
+GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
+                                   std::shared_ptr<const OdeSystem> system, double t0, const Vector& shape,
+                                   double frequency, std::function<bool()> is_interrupted)
+    : integrator_(std::move(integrator)),
+      system_(std::move(system)),
+      t0_(t0),
+      start_(system_->size()),
+      weight_(system_->size()),
+      is_interrupted_(std::move(is_interrupted)) {
+  const Vector root_mass = system_->second_order()->mass().cwiseSqrt();
+  weight_ << frequency * root_mass, root_mass;
+  constexpr double phase = 1.0;
+  start_ << amplitude * std::cos(phase) * shape, amplitude * frequency * std::sin(phase) * shape;
+}
+
+GrowthExperiment::Outcome GrowthExperiment::run(double step, std::int64_t steps) const {
+  QuarterMaxima observer(weight_, steps, is_interrupted_);
+  const Ivp ivp{system_, t0_, t0_ + step * static_cast<double>(steps), start_, {}};
+  const Solution solution =
+      integrator_->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, observer);
+  Outcome outcome;
+  outcome.is_interrupted = observer.interrupted();
+  if (observer.has_blown_up() ||
+      (!solution.status.ok() && solution.status.code != StatusCode::stopped_by_observer)) {
+    outcome.growth = infinity;
+    if (!observer.has_blown_up()) outcome.status = solution.status;
+    outcome.rate = std::numeric_limits<double>::quiet_NaN();
+    return outcome;
+  }
+  const double first = observer.maximum(0), second = observer.maximum(1), last = observer.maximum(3);
+  outcome.growth = first > 0.0 ? last / first : 0.0;
+  // The maxima of growing quarters are at their ends.
+  outcome.rate = second > 0.0 ? std::log(last / second) / (0.5 * static_cast<double>(steps)) : 0.0;
+  return outcome;
+}
+
+bool changes_sign(const Integrator& integrator, const std::shared_ptr<const OdeSystem>& system, double step,
+                  std::int64_t steps) {
+  SignWatch watch;
+  const Ivp ivp{system, 0.0, step * static_cast<double>(steps), Vector::Ones(system->size()), {}};
+  integrator.solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, watch);
+  return watch.changed();
+}
+
+}  // namespace fw::analysis

@@ -1,0 +1,83 @@
+#include "integrators/implicit/implicit_update.hpp"
+
+#include "integrators/implicit/implicit_acceleration.hpp"
+
+namespace fw::integrators {
+
+namespace {
+
+class FirstOrderUpdate final : public ImplicitUpdate, private linalg::NewtonProblem {
+ public:
+  FirstOrderUpdate(const OdeSystem& system, Work& work)
+      : system_(system),
+        work_(work),
+        newton_(system.size(), linalg::LinearSolverKind::sparse_lu),
+        matrix_(system.jacobian_pattern()),
+        start_(system.size()),
+        slope_(system.size()) {}
+
+  Status solve(double t, double c, ConstVectorRef w, VectorRef y, VectorRef slope) override {
+    time_ = t;
+    weight_ = c;
+    start_ = w;
+    Status status = newton_.solve(*this, y, 0.0, work_);
+    slope = (y - start_) / c;
+    return status;
+  }
+
+ private:
+  void residual(ConstVectorRef y, VectorRef out) override {
+    system_.rhs(time_, y, slope_);
+    ++work_.rhs_evaluations;
+    out = y - start_ - weight_ * slope_;
+  }
+  const SparseMatrix& matrix(ConstVectorRef y) override {
+    system_.jacobian(time_, y, matrix_);
+    ++work_.jacobian_evaluations;
+    matrix_.coeffs() *= -weight_;
+    add_to_diagonal(matrix_, 1.0);
+    return matrix_;
+  }
+
+  const OdeSystem& system_;
+  Work& work_;
+  linalg::Newton newton_;
+  SparseMatrix matrix_;
+  Vector start_, slope_;
+  double time_ = 0.0, weight_ = 0.0;
+};
+
+/// With y = (q, v): q' = w_q + c v', v' = w_v + c a, hence q' = w_q + c w_v + c² a.
+class SecondOrderUpdate final : public ImplicitUpdate {
+ public:
+  SecondOrderUpdate(const SecondOrderSystem& system, Work& work)
+      : equation_(system, work), acceleration_(system.degrees_of_freedom()) {}
+
+  Status solve(double t, double c, ConstVectorRef w, VectorRef y, VectorRef slope) override {
+    const Index n = acceleration_.size();
+    equation_.base_velocity() = w.tail(n);
+    equation_.base_position() = w.head(n) + c * w.tail(n);
+    acceleration_ = (y.tail(n) - w.tail(n)) / c;
+    Status status =
+        equation_.solve({.time = t, .velocity_weight = c, .position_weight = c * c}, acceleration_);
+    if (!status.ok()) return status;
+    slope.tail(n) = acceleration_;
+    slope.head(n) = w.tail(n) + c * acceleration_;
+    y = w + c * slope;
+    return {};
+  }
+
+ private:
+  ImplicitAcceleration equation_;
+  Vector acceleration_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImplicitUpdate> make_implicit_update(const OdeSystem& system, Work& work) {
+  if (system.second_order() != nullptr)
+    return std::make_unique<SecondOrderUpdate>(*system.second_order(), work);
+  return std::make_unique<FirstOrderUpdate>(system, work);
+}
+
+}  // namespace fw::integrators

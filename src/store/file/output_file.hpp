@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+
+#include "store/file/temporary_file.hpp"
+
+namespace fw::store {
+
+/// An HDF5 file in the making, published whole or not at all. The caller holds a LibraryLock.
+class OutputFile {
+ public:
+  /// Throws SystemError.
+  explicit OutputFile(const std::filesystem::path& target);
+  ~OutputFile();
+
+  hid_t id() const { return file_; }
+  bool is_open() const { return file_.get() >= 0; }
+
+  /// Runs `write`, a function of no arguments that writes to the file. If the disk refuses, or the library
+  /// fails, the file is removed and SystemError names it.
+  template <class Write>
+  void guarded(const Write& write) {
+    try {
+      write();
+    } catch (const LibraryError& error) {
+      fail(error.what());
+    }
+    check();
+  }
+
+  /// Whether to append the SHA-256 of the file behind its HDF5 content (which HDF5 readers do not see), so
+  /// that damage is noticed before the library parses it. Costs a second pass over the file.
+  enum class Seal { none, sha256 };
+
+  /// Closes the file and gives it its final name. Throws SystemError.
+  void publish(Seal seal);
+  /// Removes the file.
+  void discard() noexcept;
+
+ private:
+  void check();
+  [[noreturn]] void fail(const std::string& reason);
+
+  TemporaryFile temporary_;
+  Handle file_;
+};
+
+}  // namespace fw::store

@@ -1,0 +1,113 @@
+#include "study/energy/energy_observer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace fw::study {
+
+WatchedProblem::WatchedProblem(const StudyProblem& entry) {
+  const Problem& problem = entry.problem;
+  springs = dynamic_cast<const mechanics::MassSpringSystem*>(problem.ivp.system.get());
+  if (springs != nullptr) {
+    const Index n = springs->degrees_of_freedom();
+    quantity = "energy";
+    unit = std::string(1, 'J');  // GCC 12 warns wrongly of the assignment of one letter
+    value = [s = springs, n](double, ConstVectorRef y) { return s->energies(y.head(n), y.tail(n)).total(); };
+    const mechanics::MassSpringModel& model = springs->model();
+    is_damped = springs->force_class() == ForceClass::velocity;
+    is_free = model.fixed.empty() && model.anchors.empty() && model.obstacles.empty() && model.drag == 0.0 &&
+              norm(model.gravity) == 0.0;
+    return;
+  }
+  if (problem.invariants.empty()) {
+    throw InputError(
+        fmt::format("problem \"{}\" has neither an energy nor another invariant; damped systems "
+                    "have to be scenes, whose dampers' power is known",
+                    entry.label));
+  }
+  const Invariant& first = problem.invariants.front();
+  quantity = first.name;
+  unit = first.unit;
+  value = first.value;
+  is_isolated_spring = problem.name == "harmonic_oscillator" || problem.name == "rotation";
+  if (is_isolated_spring) frequency = problem.stiffness();
+}
+
+EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
+                               std::uint64_t steps, std::uint64_t bins, const RunContext& context)
+    : watched_(watched),
+      modified_(std::move(modified)),
+      step_(step),
+      steps_(steps),
+      bins_(std::min(bins, steps + 1)),
+      context_(context),
+      change_(steps + 1, bins) {
+  const auto series = [&] { return analysis::BinnedSeries(steps + 1, bins); };
+  if (watched.is_isolated_spring) logarithm_ = series();
+  if (modified_) modified_change_ = series();
+  if (watched.is_free) {
+    momentum_change_ = series();
+    angular_change_ = series();
+  }
+}
+
+bool EnergyObserver::observe(const StepView& view) {
+  const double energy = watched_.value(view.time, view.state);
+  if (!std::isfinite(energy)) return false;
+  if (view.index == 0) {
+    start_ = energy;
+    if (modified_) modified_start_ = modified_(view.time, view.state);
+  }
+  steps_taken_ = view.index;
+  const double change = energy - start_;
+  scale_ = std::max(scale_, std::abs(energy));
+  change_.add(view.time, change);
+  // What has decayed so far says nothing more: squares of it leave the range of doubles.
+  constexpr double decayed = 1e-100;
+  if (logarithm_ && energy > decayed * start_)
+    logarithm_->add(static_cast<double>(view.index), std::log(energy / start_));
+  if (modified_) modified_change_->add(view.time, modified_(view.time, view.state) - modified_start_);
+  if (watched_.springs != nullptr) {
+    const Index n = watched_.springs->degrees_of_freedom();
+    if (watched_.is_free) watch_momenta(view, view.state.head(n), view.state.tail(n));
+    if (watched_.is_damped) watch_work(view, view.state.head(n), view.state.tail(n), change);
+  }
+  return !context_.is_interrupted();
+}
+
+void EnergyObserver::watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v) {
+  const mechanics::MassSpringSystem& springs = *watched_.springs;
+  const Vec3<double> momentum = springs.linear_momentum(v), angular = springs.angular_momentum(q, v);
+  if (view.index == 0) {
+    momentum_start_ = momentum;
+    angular_start_ = angular;
+  }
+  double momentum_size = 0.0, angular_size = 0.0;
+  for (Index i = 0; i < springs.particle_count(); ++i) {
+    const double p = springs.mass()[3 * i] * v.segment<3>(3 * i).norm();
+    momentum_size += p;
+    angular_size += p * q.segment<3>(3 * i).norm();
+  }
+  momentum_scale_ = std::max(momentum_scale_, momentum_size);
+  angular_scale_ = std::max(angular_scale_, angular_size);
+  momentum_change_->add(view.time, norm(momentum - momentum_start_));
+  angular_change_->add(view.time, norm(angular - angular_start_));
+}
+
+void EnergyObserver::watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change) {
+  power_.add(watched_.springs->dissipated_power(q, v));
+  // The last value of each bin: where the next one belongs to another bin.
+  const auto bin = [&](std::uint64_t index) {
+    return static_cast<std::uint64_t>(static_cast<__uint128_t>(index) * bins_ / (steps_ + 1));
+  };
+  if (view.last || bin(view.index) != bin(view.index + 1)) {
+    work_.push_back(power_.integral(step_));
+    balance_.push_back(change + work_.back());
+  }
+}
+
+}  // namespace fw::study

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+
+#include "analysis/fit/binned_series.hpp"
+#include "analysis/fit/gregory_quadrature.hpp"
+#include "analysis/theory/modified_energy.hpp"
+#include "mechanics/mass_spring_system.hpp"
+#include "study/plan.hpp"
+#include "study/problem_spec.hpp"
+
+namespace fw::study {
+
+/// What is watched along a run: the first invariant of a problem (its energy), for mass-spring systems the
+/// total energy, whether it is conserved or not.
+struct WatchedProblem {
+  std::string quantity;  ///< "energy", or the invariant's name
+  std::string unit;
+  std::function<double(double t, ConstVectorRef y)> value;
+  const mechanics::MassSpringSystem* springs = nullptr;  ///< null: no mass-spring system
+  bool is_damped = false;           ///< energy leaves through dampers, and the power is known
+  bool is_free = false;             ///< no outer force: linear and angular momentum are conserved
+  bool is_isolated_spring = false;  ///< one frequency ω, see `frequency`
+  double frequency = 0.0;           ///< ω of a harmonic oscillator or rotation [1/s]
+
+  /// Throws InputError where there is nothing to watch.
+  explicit WatchedProblem(const StudyProblem& entry);
+};
+
+/// Streams one run into bins: memory does not grow with the number of steps.
+class EnergyObserver final : public Observer {
+ public:
+  EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
+                 std::uint64_t steps, std::uint64_t bins, const RunContext& context);
+
+  bool observe(const StepView& view) override;
+
+  double start() const { return start_; }  ///< the energy at the start
+  double scale() const { return scale_; }  ///< the largest energy in modulus
+  std::uint64_t steps_taken() const { return steps_taken_; }
+  const analysis::BinnedSeries& change() const { return change_; }  ///< E_n − E_0
+  /// ln(E_n/E_0) over n; empty where the energy is not positive.
+  const std::optional<analysis::BinnedSeries>& logarithm() const { return logarithm_; }
+  const std::optional<analysis::BinnedSeries>& modified_change() const { return modified_change_; }
+  const std::optional<analysis::BinnedSeries>& momentum_change() const { return momentum_change_; }
+  const std::optional<analysis::BinnedSeries>& angular_change() const { return angular_change_; }
+  double momentum_scale() const { return momentum_scale_; }  ///< the largest Σ m |v| [kg·m/s]
+  double angular_scale() const { return angular_scale_; }    ///< the largest Σ |x| m |v| [kg·m²/s]
+  /// E_n − E_0 + ∫ P dt along the numerical trajectory, at the end of each bin; empty without dampers.
+  const std::vector<double>& balance() const { return balance_; }
+  const std::vector<double>& work() const { return work_; }
+
+ private:
+  void watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v);
+  void watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change);
+
+  const WatchedProblem& watched_;
+  analysis::ModifiedEnergy modified_;
+  double step_;
+  std::uint64_t steps_, bins_;
+  const RunContext& context_;
+  double start_ = 0.0, scale_ = 0.0, modified_start_ = 0.0;
+  std::uint64_t steps_taken_ = 0;
+  analysis::BinnedSeries change_;
+  std::optional<analysis::BinnedSeries> logarithm_, modified_change_, momentum_change_, angular_change_;
+  Vec3<double> momentum_start_{}, angular_start_{};
+  double momentum_scale_ = 0.0, angular_scale_ = 0.0;
+  analysis::GregoryQuadrature power_;
+  std::vector<double> balance_, work_;
+};
+
+}  // namespace fw::study

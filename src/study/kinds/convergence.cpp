@@ -1,0 +1,356 @@
+#include "study/kinds/convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "analysis/fit/order_fit.hpp"
+#include "core/error.hpp"
+#include "study/measure/error_norms.hpp"
+#include "study/problem_spec.hpp"
+#include "study/shared_problem.hpp"
+#include "study/stop_when_interrupted.hpp"
+
+namespace fw::study {
+
+namespace {
+
+/// The keys of [convergence].
+struct Settings {
+  double ratio = 1.5;          ///< of successive steps
+  std::int64_t levels = 9;     ///< steps per case; up to twice as many if these do not suffice for a fit
+  double start_error = 0.003;  ///< relative error at the coarsest step, found by halving
+  std::int64_t max_steps = 4'000'000;  ///< no run takes more steps
+  double tolerance = 0.1;              ///< |observed − expected order| that still holds
+  double minimum_correlation = 0.999;
+
+  std::string text() const {
+    return fmt::format(
+        "ratio = {}\nlevels = {}\nstart_error = {}\nmax_steps = {}\ntolerance = {}\nminimum_correlation = "
+        "{}\n",
+        ratio, levels, start_error, max_steps, tolerance, minimum_correlation);
+  }
+};
+
+/// One run at one step.
+struct Level {
+  double step = 0.0;
+  StateError error;
+  Work work;
+};
+
+/// Rounding of double arithmetic relative to the solution's scale; the fit recognises what grows above it.
+constexpr double rounding_floor = 2e-13;
+/// Local slopes in the fit differ from the finest ones by no more than half of what a verdict tolerates.
+constexpr double slope_tolerance = 0.05;
+/// A reference has to be this much better than every error that is reported.
+constexpr double reference_margin = 0.01;
+
+/// The case problem × method.
+class ConvergenceCase {
+ public:
+  ConvergenceCase(const SharedProblem& problem, std::string call, const Integrator& integrator,
+                  Settings settings, const RunContext& context)
+      : shared_(problem),
+        problem_(problem.entry()),
+        call_(std::move(call)),
+        integrator_(integrator),
+        settings_(settings),
+        context_(context) {}
+
+  CaseResult run() {
+    if (const std::string why = why_not_applicable(integrator_.info(), *ivp().system); !why.empty()) {
+      return conclude(Verdict::not_applicable, why);
+    }
+    if (!find_reference()) return conclude(Verdict::not_applicable, reference_.status.describe());
+    std::optional<std::int64_t> coarsest = find_coarsest();
+    if (!coarsest) {
+      return conclude(Verdict::fails,
+                      fmt::format("no step down to {:.3g} gives a relative error below {:g}: {}",
+                                  length() / static_cast<double>(settings_.max_steps), settings_.start_error,
+                                  last_status_.describe()));
+    }
+    refine(*coarsest);
+    return judge();
+  }
+
+ private:
+  const Ivp& ivp() const { return problem_.problem.ivp; }
+  double length() const { return ivp().t1 - ivp().t0; }
+  bool is_second_order() const { return ivp().system->second_order() != nullptr; }
+
+  int expected_order() const {
+    const SecondOrderSystem* system = ivp().system->second_order();
+    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
+    return has_velocity_forces ? integrator_.info().order_with_velocity_forces : integrator_.info().order;
+  }
+
+  bool find_reference() {
+    reference_ = shared_.reference(context_);
+    if (!reference_.status.ok() || reference_.states.empty()) return false;
+    scale_ = measure_scale(ivp(), reference_.states.front());
+    return true;
+  }
+
+  /// Runs `steps` steps; empty if the run failed numerically.
+  std::optional<Level> run_level(std::int64_t steps) {
+    Level level;
+    level.step = length() / static_cast<double>(steps);
+    StopWhenInterrupted observer(context_);
+    const Solution solution =
+        integrator_.solve(ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
+    if (context_.is_interrupted()) throw Interrupted{};
+    last_status_ = solution.status;
+    if (!solution.status.ok()) return std::nullopt;
+    level.error = measure_error(ivp(), solution.state, reference_.states.front(), scale_);
+    level.work = solution.work;
+    return level;
+  }
+
+  /// The number of steps of the coarsest level: doubled until the relative error is small.
+  std::optional<std::int64_t> find_coarsest() {
+    for (std::int64_t steps = 8; steps <= settings_.max_steps; steps *= 2) {
+      const std::optional<Level> level = run_level(steps);
+      if (level && level->error.relative <= settings_.start_error) return steps;
+    }
+    return std::nullopt;
+  }
+
+  void refine(std::int64_t coarsest) {
+    const double floor = error_floor(rounding_floor, reference_relative());
+    std::int64_t previous = 0;
+    // Where the asymptotic range begins later, as many levels again may be spent on finding it.
+    for (std::int64_t k = 0; k < 2 * settings_.levels; ++k) {
+      if (k >= settings_.levels && is_measured()) break;
+      const double exact = static_cast<double>(coarsest) * std::pow(settings_.ratio, static_cast<double>(k));
+      const auto steps = static_cast<std::int64_t>(std::llround(exact));
+      if (steps > settings_.max_steps) break;
+      if (steps == previous) continue;  // a ratio near 1 rounds to the same number of steps
+      previous = steps;
+      std::optional<Level> level = run_level(steps);
+      if (!level) continue;
+      levels_.push_back(std::move(*level));
+      // Two levels below the floor show it; more would only cost.
+      const std::size_t n = levels_.size();
+      if (n >= 2 && levels_[n - 1].error.relative < floor && levels_[n - 2].error.relative < floor) break;
+    }
+  }
+
+  bool is_measured() const {
+    if (!is_second_order()) return fit(&StateError::relative, 1.0).valid;
+    return fit(&StateError::position, scale_.position).valid &&
+           fit(&StateError::velocity, scale_.velocity).valid;
+  }
+
+  double reference_relative() const {
+    const double size = is_second_order() ? std::min(scale_.position, scale_.velocity) : scale_.state;
+    return reference_.states.front().largest_error() / size;
+  }
+
+  static double error_floor(double rounding, double reference_error) {
+    return std::max(rounding, reference_error / reference_margin);
+  }
+
+  analysis::OrderFit fit(double StateError::*quantity, double scale) const {
+    std::vector<double> steps, errors;
+    for (const Level& level : levels_) {
+      steps.push_back(level.step);
+      errors.push_back(level.error.*quantity);
+    }
+    const double reference_error = reference_.states.front().largest_error();
+    return analysis::fit_order(steps, errors, error_floor(rounding_floor * scale, reference_error),
+                               slope_tolerance);
+  }
+
+  CaseResult judge() {
+    fit_ = fit(&StateError::relative, 1.0);
+    if (is_second_order()) {
+      fit_position_ = fit(&StateError::position, scale_.position);
+      fit_velocity_ = fit(&StateError::velocity, scale_.velocity);
+    }
+    std::string reason;
+    bool holds = true, measured = true;
+    const auto check = [&](const char* what, const analysis::OrderFit& order_fit) {
+      if (!reason.empty()) reason += "; ";
+      if (!order_fit.valid) {
+        reason += fmt::format("{}: {}", what, order_fit.reason);
+        measured = false;
+        return;
+      }
+      const bool agrees = std::abs(order_fit.order - expected_order()) <= settings_.tolerance &&
+                          order_fit.correlation >= settings_.minimum_correlation;
+      holds = holds && agrees;
+      reason += fmt::format("{} {:.3f} [{:.3f}, {:.3f}] r = {:.6f}", what, order_fit.order,
+                            order_fit.order_low, order_fit.order_high, order_fit.correlation);
+    };
+    if (is_second_order()) {
+      check("position", *fit_position_);
+      check("velocity", *fit_velocity_);
+    } else {
+      check("state", fit_);
+    }
+    if (!measured && reference_relative() / reference_margin > rounding_floor) {
+      return conclude(Verdict::not_applicable,
+                      fmt::format("the reference is known to {:.2g} only; {}",
+                                  reference_.states.front().largest_error(), reason));
+    }
+    // A claim that cannot be shown does not hold.
+    return conclude(holds && measured ? Verdict::holds : Verdict::fails, reason);
+  }
+
+  CaseResult conclude(Verdict verdict, std::string reason) const {
+    CaseResult result;
+    result.verdict = verdict;
+    result.reason = std::move(reason);
+    add_columns(result);
+    add_summary(result);
+    return result;
+  }
+
+  void add_columns(CaseResult& result) const {
+    std::vector<double> step, position, velocity, relative, seconds, components;
+    std::vector<std::int64_t> used, evaluations;
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const Level& level = levels_[k];
+      step.push_back(level.step);
+      position.push_back(level.error.position);
+      velocity.push_back(level.error.velocity);
+      relative.push_back(level.error.relative);
+      seconds.push_back(level.work.seconds);
+      evaluations.push_back(static_cast<std::int64_t>(level.work.rhs_evaluations));
+      used.push_back(fit_.used.empty() ? 0 : fit_.used[k]);
+      components.insert(components.end(), level.error.components.begin(), level.error.components.end());
+    }
+    const auto used_of = [&](const std::optional<analysis::OrderFit>& order_fit) {
+      std::vector<std::int64_t> flags(levels_.size(), 0);
+      if (order_fit) std::copy(order_fit->used.begin(), order_fit->used.end(), flags.begin());
+      return flags;
+    };
+    const std::string root_mean_square = "root mean square over the components at the end time";
+    const auto size = static_cast<std::uint64_t>(ivp().system->size());
+    result.columns = {
+        {"step", "s", step, {}, {}},
+        {"error_position", "m", position, {}, {{"norm", root_mean_square}}},
+        {"error_velocity", "m/s", velocity, {}, {{"norm", root_mean_square}}},
+        {"error", "1", relative, {}, {{"norm", relative_norm()}}},
+        {"used", "1", used, {}, {}},
+        {"used_position", "1", used_of(fit_position_), {}, {}},
+        {"used_velocity", "1", used_of(fit_velocity_), {}, {}},
+        {"error_components",
+         "SI",
+         components,
+         {levels_.size(), size},
+         {{"norm", "signed difference per component of the state"}}},
+        {"rhs_evaluations", "1", evaluations, {}, {}},
+        {"seconds", "s", seconds, {}, {}},
+    };
+    if (!problem_.scene_toml.empty()) {
+      result.columns.push_back({"scene", "", std::vector<std::string>{problem_.scene_toml}, {}, {}});
+    }
+  }
+
+  std::string relative_norm() const {
+    if (!is_second_order()) return fmt::format("root mean square over the state / {:.6g}", scale_.state);
+    return fmt::format("sqrt(((error_position / {:.6g} m)^2 + (error_velocity / {:.6g} m/s)^2) / 2)",
+                       scale_.position, scale_.velocity);
+  }
+
+  void add_summary(CaseResult& result) const {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const bool has_reference = !reference_.states.empty();
+    const auto add_fit = [&](const std::string& suffix, const std::optional<analysis::OrderFit>& order_fit) {
+      const bool valid = order_fit && order_fit->valid;
+      result.summary.push_back({"order" + suffix, "1", valid ? order_fit->order : none});
+      result.summary.push_back({"order_low" + suffix, "1", valid ? order_fit->order_low : none});
+      result.summary.push_back({"order_high" + suffix, "1", valid ? order_fit->order_high : none});
+      result.summary.push_back({"correlation" + suffix, "1", valid ? order_fit->correlation : none});
+      result.summary.push_back(
+          {"points" + suffix, "1", static_cast<std::int64_t>(order_fit ? order_fit->points : 0)});
+    };
+    result.summary = {{"problem", "", problem_.label},
+                      {"method", "", call_},
+                      {"expected_order", "1", static_cast<std::int64_t>(expected_order())}};
+    add_fit("", fit_);
+    add_fit("_position", fit_position_);
+    add_fit("_velocity", fit_velocity_);
+    result.summary.push_back(
+        {"reference_error", "SI", has_reference ? reference_.states.front().largest_error() : none});
+    result.summary.push_back({"verdict", "", std::string(to_string(result.verdict))});
+    result.summary.push_back({"reason", "", result.reason});
+  }
+
+  const SharedProblem& shared_;
+  const StudyProblem& problem_;
+  std::string call_;
+  const Integrator& integrator_;
+  Settings settings_;
+  const RunContext& context_;
+  analysis::ReferenceSolution reference_;
+  StateScale scale_;
+  std::vector<Level> levels_;
+  Status last_status_;
+  analysis::OrderFit fit_;
+  std::optional<analysis::OrderFit> fit_position_, fit_velocity_;
+};
+
+Settings read_settings(const CheckedTable& spec, bool quick) {
+  Settings settings;
+  const CheckedTable table = spec.table_or_empty("convergence");
+  settings.ratio = table.number_or("ratio", settings.ratio, NumberRule::positive);
+  if (settings.ratio <= 1.0)
+    table.fail("ratio", fmt::format("found {}, expected more than 1", settings.ratio));
+  settings.levels = table.integer_or("levels", settings.levels, 6, 100);
+  settings.start_error = table.number_or("start_error", settings.start_error, NumberRule::positive);
+  settings.max_steps = table.integer_or("max_steps", settings.max_steps, 100, 10'000'000'000);
+  settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
+  settings.minimum_correlation =
+      table.number_or("minimum_correlation", settings.minimum_correlation, NumberRule::nonnegative);
+  const CheckedTable shrunk = spec.table_or_empty("quick");
+  const std::int64_t quick_levels =
+      shrunk.integer_or("levels", std::min<std::int64_t>(settings.levels, 6), 6, 100);
+  const double quick_ratio = shrunk.number_or("ratio", settings.ratio, NumberRule::positive);
+  if (quick_ratio <= 1.0) shrunk.fail("ratio", fmt::format("found {}, expected more than 1", quick_ratio));
+  if (quick) {
+    settings.levels = quick_levels;
+    settings.ratio = quick_ratio;
+  }
+  return settings;
+}
+
+void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
+  const Settings settings = read_settings(spec, quick);
+  const std::vector<std::string> methods = read_methods(spec, catalog);
+  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
+    const auto problem = std::make_shared<const SharedProblem>(std::move(entry));
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+      const std::string& call = methods[i];
+      const std::shared_ptr<const Integrator> integrator = catalog.method(call);
+      if (!integrator->info().has_fixed_step) {
+        spec.fail("methods", {i},
+                  fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
+      }
+      plan.cases.push_back({.id = group_name(problem->entry().label + "-" + call),
+                            .identity = "convergence\n" + problem->entry().identity + "method = " + call +
+                                        "\n" + settings.text(),
+                            .run = [problem, call, integrator, settings](const RunContext& context) {
+                              return ConvergenceCase(*problem, call, *integrator, settings, context).run();
+                            }});
+    }
+  }
+}
+
+}  // namespace
+
+StudyKind convergence_kind() {
+  return {.name = "convergence",
+          .title = "Observed order of accuracy",
+          .description =
+              "error against step for every method on every problem, fitted order with a 95 % interval",
+          .read = read_convergence};
+}
+
+}  // namespace fw::study

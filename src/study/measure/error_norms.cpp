@@ -1,0 +1,58 @@
+#include "study/measure/error_norms.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace fw::study {
+
+namespace {
+
+double root_mean_square(ConstVectorRef values) {
+  return values.size() == 0 ? 0.0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
+}
+
+/// A scale that is zero (a system at rest) would divide by zero: errors are then absolute.
+double positive_or_one(double scale) {
+  return scale > 0.0 ? scale : 1.0;
+}
+
+}  // namespace
+
+StateScale measure_scale(const Ivp& ivp, const analysis::ReferenceState& reference) {
+  const Vector end = reference.rounded();
+  StateScale scale;
+  scale.state = positive_or_one(root_mean_square(end));
+  if (ivp.system->second_order() != nullptr) {
+    const Index n = end.size() / 2;
+    // Where points return close to their start, the change is no measure of the motion.
+    const double change = root_mean_square(end.head(n) - ivp.y0.head(n));
+    const double size = root_mean_square(end.head(n));
+    scale.position = positive_or_one(std::max(change, 1e-3 * size));
+    scale.velocity =
+        positive_or_one(std::max(root_mean_square(end.tail(n)), root_mean_square(ivp.y0.tail(n))));
+  }
+  return scale;
+}
+
+StateError measure_error(const Ivp& ivp, ConstVectorRef state, const analysis::ReferenceState& reference,
+                         const StateScale& scale) {
+  Vector difference(state.size());
+  for (Index i = 0; i < state.size(); ++i) {
+    difference[i] = static_cast<double>(Float128(state[i]) - reference.value[static_cast<std::size_t>(i)]);
+  }
+  StateError error;
+  error.components.assign(difference.data(), difference.data() + difference.size());
+  if (ivp.system->second_order() == nullptr) {
+    error.position = error.velocity = std::numeric_limits<double>::quiet_NaN();
+    error.relative = root_mean_square(difference) / scale.state;
+    return error;
+  }
+  const Index n = state.size() / 2;
+  error.position = root_mean_square(difference.head(n));
+  error.velocity = root_mean_square(difference.tail(n));
+  error.relative = std::sqrt(
+      0.5 * (std::pow(error.position / scale.position, 2) + std::pow(error.velocity / scale.velocity, 2)));
+  return error;
+}
+
+}  // namespace fw::study

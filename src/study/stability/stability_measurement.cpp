@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "analysis/theory/stability_limit.hpp"
+#include "study/stability/stability_cases.hpp"
+
+namespace fw::study {
+
+namespace {
+
+using analysis::GrowthExperiment;
+using analysis::LinearModes;
+using analysis::SchemeGrowth;
+
+constexpr double none = StabilityRow::none;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The smallest step of a search, in units of 1/|λ|: below the limit of every scheme that has one.
+constexpr double first_step = 0.05;
+
+class LimitMeasurement {
+ public:
+  LimitMeasurement(const StabilityProblem& problem, const StabilityMethod& method, const SchemeGrowth& growth,
+                   const LimitSettings& settings, const RunContext& context)
+      : ivp_(problem.ivp()),
+        method_(method),
+        growth_(growth),
+        settings_(settings),
+        context_(context),
+        spectrum_(problem.spectrum(settings, context)),
+        system_(spectrum_.system) {}
+
+  StabilityLimit run() {
+    StabilityLimit limit;
+    limit.failure = why_not_applicable(method_.integrator->info(), *system_);
+    if (limit.failure.empty()) limit.failure = spectrum_.failure;
+    if (limit.failure.empty() && !(spectrum_.spectral_radius > 0.0))
+      limit.failure = "J has no eigenvalue other than 0";
+    if (limit.failure.empty() && spectrum_.is_linear && spectrum_.modes.front().growing > 0)
+      limit.failure = "J has eigenvalues with Re λ > 0: solutions grow, and a step is not to blame for that";
+    if (!limit.failure.empty()) return limit;
+    limit.predicted = predict();
+    if (spectrum_.is_linear) {
+      observe_linear(limit);
+    } else {
+      observe_trajectory(limit);
+    }
+    if (spectrum_.is_linear && system_->size() == 1) find_monotone(limit);
+    return limit;
+  }
+
+ private:
+  double unit() const { return 1.0 / spectrum_.spectral_radius; }
+  double farthest() const { return settings_.farthest * unit(); }
+
+  void stop_if_interrupted() const {
+    if (context_.is_interrupted()) throw Interrupted{};
+  }
+
+  std::shared_ptr<const OdeSystem> exact_system() const { return spectrum_.is_linear ? system_ : nullptr; }
+
+  double growth_at(const LinearModes& modes, double step) const {
+    stop_if_interrupted();
+    return growth_.of_system(modes, step, exact_system());
+  }
+
+  double predict() const {
+    double smallest = infinity;
+    for (const LinearModes& modes : spectrum_.modes) {
+      const double limit = predict(modes);
+      if (std::isnan(limit)) return none;
+      smallest = std::min(smallest, limit);
+    }
+    return smallest;
+  }
+
+  double predict(const LinearModes& modes) const {
+    const bool is_whole = growth_.is_of_whole_step(modes, exact_system());
+    if (std::isnan(growth_at(modes, first_step * unit()))) return none;
+    if (modes.is_undamped && growth_.grows_at_every_step()) return 0.0;
+    const double allowed = 1.0 + resolved_growth(is_whole);
+    return analysis::largest_stable_step([&](double step) { return growth_at(modes, step) <= allowed; },
+                                         {.first = first_step * unit(),
+                                          .ratio = is_whole        ? 1.05
+                                                   : is_by_steps() ? 1.01
+                                                                   : 1.002,
+                                          .farthest = farthest(),
+                                          .resolution = 1e-5});
+  }
+
+  bool is_by_steps() const { return growth_.basis() == analysis::GrowthBasis::single_steps; }
+
+  /// Growth per step beyond rounding: of |R|; of roots of a polynomial and eigenvalues of small matrices,
+  /// which may be double; of single steps (of implicit schemes to what their iterations leave); of large
+  /// matrices.
+  double resolved_growth(bool is_whole) const {
+    if (is_whole) return 1e-6;
+    if (growth_.basis() == analysis::GrowthBasis::stability_function) return 1e-13;
+    if (is_by_steps()) return method_.integrator->info().is_explicit ? 1e-10 : 1e-7;
+    return 1e-9;
+  }
+
+  /// So many steps that 1 % beyond the predicted limit grows clearly; 0: not with as many as are allowed.
+  std::int64_t steps_for(double predicted) const {
+    constexpr double clear = 18.0;  // ln of the growth
+    if (!(predicted > 0.0)) return 0;
+    if (std::isinf(predicted)) return settings_.fewest_steps / 4;
+    double strongest = 1.0;
+    for (const double excess : {5e-4, 1e-3, 2e-3, 4e-3, 7e-3, 1e-2})
+      strongest = std::max(strongest, growth_at(spectrum_.modes.front(), (1.0 + excess) * predicted));
+    const double steps = clear / std::log(strongest);
+    if (!(steps <= static_cast<double>(settings_.most_steps))) return 0;
+    return std::max(settings_.fewest_steps, static_cast<std::int64_t>(std::ceil(steps)));
+  }
+
+  void observe_linear(StabilityLimit& limit) {
+    const GrowthExperiment experiment(method_.integrator, system_, ivp_.t0, spectrum_.spectral_radius,
+                                      static_cast<std::uint64_t>(settings_.seed),
+                                      [this] { return context_.is_interrupted(); });
+    limit.steps = steps_for(limit.predicted);
+    if (limit.steps > 0 || std::isnan(limit.predicted)) {
+      if (limit.steps == 0) limit.steps = settings_.fewest_steps;
+      limit.observed = analysis::largest_stable_step(
+          [&](double step) {
+            const GrowthExperiment::Outcome outcome = experiment.run(step, limit.steps);
+            if (outcome.is_interrupted) throw Interrupted{};
+            if (!outcome.status.ok() && outcome.status.code != StatusCode::blow_up)
+              limit.failed_run = outcome.status.describe();
+            return outcome.growth < settings_.growth;
+          },
+          search_near(limit.predicted));
+      return;
+    }
+    confirm_growth(experiment, limit);
+    if (limit.predicted > 0.0) observe_critical_mode(limit);
+  }
+
+  analysis::LimitSearch search_near(double predicted) const {
+    return {.first = std::min(first_step * unit(), 0.5 * predicted),
+            .ratio = 1.25,
+            .farthest = farthest(),
+            .watched = predicted > 0.0 ? predicted : infinity};
+  }
+
+  /// From the mode that grows most with this step; empty where modes are damped or unknown.
+  std::optional<GrowthExperiment> critical_mode(double step) const {
+    const LinearModes& modes = spectrum_.modes.front();
+    if (modes.shapes.empty() || modes.coupling > 0.0) return std::nullopt;
+    std::size_t critical = 0;
+    double strongest = 0.0;
+    for (std::size_t k = 0; k < modes.vibrations.size(); ++k) {
+      const analysis::VibrationMode& mode = modes.vibrations[k];
+      if (mode.damping != 0.0) return std::nullopt;
+      const double growth = growth_.of_vibration(step * step * mode.omega_squared, 0.0);
+      if (growth > strongest) {
+        strongest = growth;
+        critical = k;
+      }
+    }
+    return GrowthExperiment(method_.integrator, system_, ivp_.t0, modes.shapes[critical],
+                            std::sqrt(modes.vibrations[critical].omega_squared),
+                            [this] { return context_.is_interrupted(); });
+  }
+
+  /// Growth that is too weak to be told from the beat of many modes is seen where only the mode that grows is
+  /// excited: of R(z) to rounding, of others (whose norm is not that of the mode) by a fifth.
+  void observe_critical_mode(StabilityLimit& limit) const {
+    const std::optional<GrowthExperiment> experiment = critical_mode(1.01 * limit.predicted);
+    if (!experiment) return;
+    const MethodInfo& info = method_.integrator->info();
+    const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
+                             (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
+                              !info.carries_more_than_state && !info.needs_second_order);
+    const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
+    const double bound =
+        is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;
+    limit.observed = analysis::largest_stable_step(
+        [&](double step) {
+          const GrowthExperiment::Outcome outcome = experiment->run(step, settings_.most_steps);
+          if (outcome.is_interrupted) throw Interrupted{};
+          return outcome.growth < bound;
+        },
+        search_near(limit.predicted));
+  }
+
+  /// Where instability has no threshold that runs could show, it is shown at two steps that are far apart:
+  /// the factor per step has to be the predicted one.
+  void confirm_growth(const GrowthExperiment& experiment, StabilityLimit& limit) const {
+    constexpr double logarithm = 36.0;  // of the growth in a run
+    limit.is_confirmed_by_growth = true;
+    const LinearModes& modes = spectrum_.modes.front();
+    for (const std::int64_t steps : {settings_.most_steps / 20, settings_.most_steps}) {
+      const double wanted = logarithm / static_cast<double>(steps);
+      double step =
+          analysis::largest_stable_step([&](double h) { return !(std::log(growth_at(modes, h)) > wanted); },
+                                        {.first = std::max(first_step * unit(), 1.01 * limit.predicted),
+                                         .ratio = 1.05,
+                                         .farthest = farthest(),
+                                         .resolution = 1e-9});
+      if (!(step > 0.0) || std::isinf(step)) continue;
+      step *= 1.0 + 1e-9;  // growth may jump where a gap begins
+      // Modes of nearly the same growth would blur it.
+      const GrowthExperiment::Outcome outcome = critical_mode(step).value_or(experiment).run(step, steps);
+      if (outcome.is_interrupted) throw Interrupted{};
+      limit.growth_ratios.push_back(outcome.rate / std::log(growth_at(modes, step)));
+      limit.steps = steps;
+    }
+    const bool all_grow =
+        !limit.growth_ratios.empty() && std::all_of(limit.growth_ratios.begin(), limit.growth_ratios.end(),
+                                                    [](double ratio) { return ratio > 0.5; });
+    if (all_grow && limit.predicted == 0.0) limit.observed = 0.0;
+  }
+
+  /// Of a nonlinear problem: the largest step with which velocities stay within `growth` times the largest
+  /// ones of an accurate solution, on its own interval.
+  void observe_trajectory(StabilityLimit& limit) const {
+    class Bound final : public Observer {
+     public:
+      Bound(double bound, const SecondOrderSystem* system, const RunContext& context)
+          : bound_(bound), system_(system), context_(context) {}
+      bool observe(const StepView& view) override {
+        const double size =
+            system_ != nullptr ? view.state.tail(system_->degrees_of_freedom()).norm() : view.state.norm();
+        exceeded_ = exceeded_ || !(size <= bound_);
+        return !exceeded_ && !context_.is_interrupted();
+      }
+      bool exceeded() const { return exceeded_; }
+
+     private:
+      double bound_;
+      const SecondOrderSystem* system_;
+      const RunContext& context_;
+      bool exceeded_ = false;
+    };
+    Ivp ivp = ivp_;
+    ivp.y0_extended.clear();
+    std::mt19937_64 random(static_cast<std::uint64_t>(settings_.seed));
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    const SecondOrderSystem* second_order = ivp.system->second_order();
+    constexpr double perturbation = 1e-3;
+    const Index n = second_order != nullptr ? second_order->degrees_of_freedom() : ivp.y0.size();
+    const double size = perturbation * spectrum_.largest_size / std::sqrt(static_cast<double>(n));
+    for (Index i = 0; i < n; ++i) {
+      const double change = size * uniform(random);
+      if (second_order == nullptr) ivp.y0[i] += change;
+      if (second_order != nullptr && !second_order->fixed()[static_cast<std::size_t>(i)])
+        ivp.y0[n + i] += change;
+    }
+    const double length = ivp.t1 - ivp.t0;
+    constexpr double fewest = 40.0;
+    limit.observed = analysis::largest_stable_step(
+        [&](double step) {
+          stop_if_interrupted();
+          const double steps = std::max(fewest, std::ceil(length / step));
+          ivp.t1 = ivp.t0 + steps * step;
+          Bound bound(settings_.growth * spectrum_.largest_size, second_order, context_);
+          const Solution solution =
+              method_.integrator->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, bound);
+          if (context_.is_interrupted()) throw Interrupted{};
+          return solution.status.ok() && !bound.exceeded();
+        },
+        {.first = first_step * unit(),
+         .ratio = 1.25,
+         .farthest = std::min(farthest(), length),
+         .resolution = 5e-3});
+    limit.steps = static_cast<std::int64_t>(fewest);
+  }
+
+  /// x' = −kx: up to which step the solution falls without changing its sign (S11: 1/k for explicit Euler).
+  void find_monotone(StabilityLimit& limit) const {
+    const double lambda = spectrum_.modes.front().eigenvalues.empty()
+                              ? 0.0
+                              : spectrum_.modes.front().eigenvalues.front().real();
+    if (!(lambda < 0.0) || !growth_.factor_of_decay(first_step * unit() * lambda)) return;
+    constexpr double far = 100.0;
+    constexpr std::int64_t steps = 50;
+    limit.monotone_predicted = analysis::largest_stable_step(
+        [&](double step) { return *growth_.factor_of_decay(step * lambda) >= 0.0; },
+        {.first = first_step * unit(), .ratio = 1.01, .farthest = far * unit(), .resolution = 1e-9});
+    limit.monotone_observed = analysis::largest_stable_step(
+        [&](double step) {
+          stop_if_interrupted();
+          return !analysis::changes_sign(*method_.integrator, system_, step, steps);
+        },
+        {.first = first_step * unit(), .ratio = 1.1, .farthest = far * unit(), .resolution = 1e-6});
+  }
+
+  const Ivp& ivp_;
+  const StabilityMethod& method_;
+  const SchemeGrowth& growth_;
+  const LimitSettings& settings_;
+  const RunContext& context_;
+  const ProblemSpectrum& spectrum_;
+  std::shared_ptr<const OdeSystem> system_;
+};
+
+}  // namespace
+
+StabilityLimit measure_limit(const StabilityProblem& problem, const StabilityMethod& method,
+                             const SchemeGrowth& growth, const LimitSettings& settings,
+                             const RunContext& context) {
+  return LimitMeasurement(problem, method, growth, settings, context).run();
+}
+
+}  // namespace fw::study

@@ -1,0 +1,224 @@
+#include "text/checked_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+#include "core/error.hpp"
+#include "text/checked_table_section.hpp"
+#include "text/toml_writer.hpp"
+
+namespace fw {
+namespace {
+
+std::string read_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw InputError(fmt::format("{}: no such file", path.string()));
+  }
+  if (status.type() == std::filesystem::file_type::directory) {
+    throw InputError(fmt::format("{}: found a directory, expected a TOML file", path.string()));
+  }
+  using std::filesystem::file_type;
+  if (status.type() == file_type::character || status.type() == file_type::block) {
+    throw InputError(fmt::format("{}: found a device, expected a TOML file", path.string()));
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+  // Not `text << file.rdbuf()`, which takes a failure to read for the end of the file.
+  std::string text;
+  std::array<char, 65536> buffer{};
+  while (file.read(buffer.data(), buffer.size()) || file.gcount() > 0) {
+    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (file.bad())
+    throw SystemError(fmt::format("{}: reading failed: {}", path.string(), std::strerror(errno)));
+  return text;
+}
+
+}  // namespace
+
+CheckedTable::CheckedTable(std::shared_ptr<Section> section) : section_(std::move(section)) {}
+
+CheckedTable CheckedTable::parse_file(const std::filesystem::path& path) {
+  return parse_text(read_file(path), path.string());
+}
+
+CheckedTable CheckedTable::parse_text(std::string_view text, std::string name) {
+  auto document = std::make_shared<Section::Document>();
+  document->name = std::move(name);
+  try {
+    document->root = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto position = error.source().begin;
+    throw InputError(fmt::format("{}:{}:{}: TOML syntax error: {}", document->name, position.line,
+                                 position.column, error.description()));
+  }
+  toml::table* root = &document->root;
+  return CheckedTable(std::make_shared<Section>(Section{std::move(document), root, ""}));
+}
+
+const std::string& CheckedTable::source_name() const {
+  return section_->document->name;
+}
+
+const std::string& CheckedTable::path() const {
+  return section_->path;
+}
+
+std::vector<std::string> CheckedTable::keys() const {
+  std::vector<std::string> result;
+  for (const auto& [key, node] : *section_->table) {
+    if (node.source().begin.line > 0) result.emplace_back(key.str());
+  }
+  return result;
+}
+
+bool CheckedTable::has(std::string_view key) const {
+  auto& candidates = section_->document->asked[section_->table];
+  if (std::find(candidates.begin(), candidates.end(), key) == candidates.end()) candidates.emplace_back(key);
+  const toml::node* node = section_->table->get(key);
+  return node && node->source().begin.line > 0;  // an entry without a line is a default
+}
+
+bool CheckedTable::is_table(std::string_view key) const {
+  return has(key) && section_->table->get(key)->is_table();
+}
+
+double CheckedTable::number(std::string_view key, NumberRule rule) const {
+  return section_->number_of(section_->require(key, "a number"), {key}, rule);
+}
+
+double CheckedTable::number_or(std::string_view key, double value, NumberRule rule) const {
+  if (const auto* node = section_->find(key)) return section_->number_of(*node, {key}, rule);
+  section_->add_default(key, value);
+  return value;
+}
+
+std::int64_t CheckedTable::integer(std::string_view key, std::int64_t lowest, std::int64_t highest) const {
+  return section_->integer_of(section_->require(key, "an integer"), {key}, lowest, highest);
+}
+
+std::int64_t CheckedTable::integer_or(std::string_view key, std::int64_t value, std::int64_t lowest,
+                                      std::int64_t highest) const {
+  if (const auto* node = section_->find(key)) return section_->integer_of(*node, {key}, lowest, highest);
+  section_->add_default(key, value);
+  return value;
+}
+
+bool CheckedTable::boolean(std::string_view key) const {
+  const auto& node = section_->require(key, "true or false");
+  if (!node.is_boolean()) section_->fail(node, {key}, "true or false");
+  return node.as_boolean()->get();
+}
+
+bool CheckedTable::boolean_or(std::string_view key, bool value) const {
+  if (section_->find(key)) return boolean(key);
+  section_->add_default(key, value);
+  return value;
+}
+
+std::string CheckedTable::string(std::string_view key) const {
+  return section_->string_of(section_->require(key, "a string"), {key});
+}
+
+std::string CheckedTable::string_or(std::string_view key, const std::string& value) const {
+  if (const auto* node = section_->find(key)) return section_->string_of(*node, {key});
+  section_->add_default(key, value);
+  return value;
+}
+
+std::string CheckedTable::choice(std::string_view key, const std::vector<std::string>& allowed) const {
+  std::string expected = allowed.size() > 1 ? "one of " : "";
+  for (std::size_t i = 0; i < allowed.size(); ++i) expected += (i ? ", \"" : "\"") + allowed[i] + '"';
+  return section_->choice_of(section_->require(key, expected), {key}, allowed);
+}
+
+std::string CheckedTable::choice_or(std::string_view key, const std::string& value,
+                                    const std::vector<std::string>& allowed) const {
+  if (const auto* node = section_->find(key)) return section_->choice_of(*node, {key}, allowed);
+  section_->add_default(key, value);
+  return value;
+}
+
+Vec3<double> CheckedTable::vec3(std::string_view key) const {
+  return section_->vec3_of(section_->require(key, "an array of 3 numbers [x, y, z]"), {key});
+}
+
+Vec3<double> CheckedTable::vec3_or(std::string_view key, const Vec3<double>& value) const {
+  if (const auto* node = section_->find(key)) return section_->vec3_of(*node, {key});
+  section_->add_default(key, toml::array{value.x, value.y, value.z});
+  return value;
+}
+
+CheckedTable CheckedTable::table(std::string_view key) const {
+  const std::string child = (path().empty() ? "" : path() + ".") + std::string(key);
+  auto& node = section_->require(key, fmt::format("a section [{}]", child));
+  if (!node.is_table()) section_->fail(node, {key}, fmt::format("a section [{}]", child));
+  return CheckedTable(std::make_shared<Section>(Section{section_->document, node.as_table(), child}));
+}
+
+CheckedTable CheckedTable::table_or_empty(std::string_view key) const {
+  if (!section_->find(key)) section_->add_default(key, toml::table{});
+  return table(key);
+}
+
+std::vector<CheckedTable> CheckedTable::tables(std::string_view key) const {
+  const std::string child = (path().empty() ? "" : path() + ".") + std::string(key);
+  std::vector<CheckedTable> result;
+  auto* node = section_->find(key);
+  if (!node) return result;
+  auto* array = node->as_array();
+  if (!array || (!array->empty() && !array->is_array_of_tables())) {
+    section_->fail(*node, {key}, fmt::format("sections [[{}]]", child));
+  }
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    result.push_back(CheckedTable(std::make_shared<Section>(
+        Section{section_->document, array->get(i)->as_table(), fmt::format("{}[{}]", child, i)})));
+  }
+  return result;
+}
+
+void CheckedTable::finish() const {
+  toml::source_index line = 0;
+  std::string message;
+  section_->find_unknown(line, message);
+  if (!message.empty()) throw InputError(fmt::format("{}:{}: {}", source_name(), line, message));
+}
+
+std::string CheckedTable::where(std::string_view key, std::initializer_list<std::size_t> indices) const {
+  EntryPlace place{key};
+  const toml::node* node = key.empty() ? nullptr : section_->table->get(key);
+  for (const std::size_t i : indices) {
+    place = place.at(i);
+    const auto* array = node ? node->as_array() : nullptr;
+    if (array && i < array->size()) node = array->get(i);
+  }
+  return section_->where(node, place);
+}
+
+void CheckedTable::fail(std::string_view key, const std::string& message) const {
+  fail(key, {}, message);
+}
+
+void CheckedTable::fail(std::string_view key, std::initializer_list<std::size_t> indices,
+                        const std::string& message) const {
+  throw InputError(where(key, indices) + ": " + message);
+}
+
+void CheckedTable::fail_missing(std::string_view key, const std::string& expected) const {
+  section_->fail_missing(key, expected);
+}
+
+std::string CheckedTable::to_toml_text() const {
+  return fw::to_toml_text(*section_->table);
+}
+
+}  // namespace fw

@@ -1,0 +1,73 @@
+#pragma once
+
+// Private to checked_table*.cpp: keeps the slow headers of toml++ out of everybody else's way.
+
+#include <toml++/toml.h>
+
+#include <unordered_map>
+#include <unordered_set>
+
+#include "text/checked_table.hpp"
+
+namespace fw {
+
+/// An entry of a section: a key, and indices if it lies in an array.
+struct EntryPlace {
+  std::string_view key;
+  std::array<std::size_t, 3> index{};
+  std::size_t depth = 0;
+
+  EntryPlace at(std::size_t i) const {
+    EntryPlace inner = *this;
+    inner.index.at(inner.depth++) = i;
+    return inner;
+  }
+};
+
+struct CheckedTable::Section {
+  struct Document {
+    std::string name;
+    toml::table root;
+    std::unordered_set<const toml::node*> read;
+    std::unordered_map<const toml::table*, std::vector<std::string>> asked;  ///< candidates of "did you mean"
+  };
+
+  std::shared_ptr<Document> document;
+  toml::table* table = nullptr;
+  std::string path;
+
+  /// Notes that the key is known; the entry, marked as read, or null.
+  toml::node* find(std::string_view key) const;
+  /// The same for a key that has to be there.
+  toml::node& require(std::string_view key, std::string_view expected) const;
+  [[noreturn]] void fail_missing(std::string_view key, std::string_view expected) const;
+  /// Adds an entry that the file does not give.
+  template <class Value>
+  void add_default(std::string_view key, Value&& value) const {
+    const auto [position, inserted] = table->insert(key, std::forward<Value>(value));
+    document->read.insert(&position->second);
+  }
+
+  std::string where(const toml::node* node, const EntryPlace& place) const;
+  [[noreturn]] void fail(const toml::node& node, const EntryPlace& place, std::string_view expected) const;
+  /// The first key below this section that nobody asked for: line and message.
+  void find_unknown(toml::source_index& line, std::string& message) const;
+  std::string unknown_key_message(const toml::key& key, const toml::node& node) const;
+
+  double number_of(const toml::node& node, const EntryPlace& place, NumberRule rule) const;
+  std::int64_t integer_of(const toml::node& node, const EntryPlace& place, std::int64_t lowest,
+                          std::int64_t highest) const;
+  int index_of(const toml::node& node, const EntryPlace& place, std::size_t count,
+               std::string_view what) const;
+  std::string string_of(const toml::node& node, const EntryPlace& place) const;
+  std::string choice_of(const toml::node& node, const EntryPlace& place,
+                        const std::vector<std::string>& allowed) const;
+  Vec3<double> vec3_of(const toml::node& node, const EntryPlace& place) const;
+  const toml::array& array_of(const toml::node& node, const EntryPlace& place,
+                              std::string_view expected) const;
+};
+
+/// What a message says was found: `the string "abc"`, `-1`, `an array of 2 entries`.
+std::string describe(const toml::node& node);
+
+}  // namespace fw
