@@ -1,8 +1,8 @@
 #include "problems/oscillators.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "dense/eigenvalues.hpp"
 #include "ode/functor_system.hpp"
 #include "problems/parameter.hpp"
 #include "problems/spectral_radius.hpp"
@@ -70,7 +70,7 @@ Problem linear_oscillator(const Parameter& mass, const Parameter& stiffness, con
   };
   Matrix J(2, 2);
   J << 0.0, 1.0, -stiffness.binary() / mass.binary(), -damping.binary() / mass.binary();
-  problem.stiffness = [radius = J.eigenvalues().cwiseAbs().maxCoeff()] { return radius; };
+  problem.stiffness = [radius = dense::eigenvalues(J).cwiseAbs().maxCoeff()] { return radius; };
   return problem;
 }
 

@@ -1,11 +1,13 @@
 #include "analysis/theory/scheme_growth.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 
+#include "dense/eigenvalues.hpp"
+#include "dense/factorisations.hpp"
 #include "ode/functor_system.hpp"
 #include "schemes/derived_properties.hpp"
 #include "schemes/multistep_properties.hpp"
@@ -62,7 +64,7 @@ double spectral_radius(const Eigen::Matrix2d& m) {
 
 double spectral_radius(const Matrix& m) {
   if (!m.allFinite()) return infinity;
-  return Eigen::EigenSolver<Matrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
+  return dense::eigenvalues(m).cwiseAbs().maxCoeff();
 }
 
 /// The states after `steps` steps of length h, one per step; empty if a step fails.
@@ -144,8 +146,8 @@ Matrix verlet_recurrence(LinearRule rule, const Matrix& a, const Matrix& b) {
   const Index n = a.rows();
   const Matrix one = Matrix::Identity(n, n);
   if (rule == LinearRule::verlet_backward_velocity) return companion(2.0 * one - a - b, b - one);
-  const Eigen::PartialPivLU<Matrix> implicit((one + 0.5 * b).eval());
-  return companion(implicit.solve(2.0 * one - a), implicit.solve(0.5 * b - one));
+  const dense::Lu implicit(one + 0.5 * b);
+  return companion(implicit.solve(Matrix(2.0 * one - a)), implicit.solve(Matrix(0.5 * b - one)));
 }
 
 using WideComplex = std::complex<Float128>;
@@ -214,7 +216,7 @@ struct SchemeGrowth::Stages {
     Matrix right(count, 2);
     right.col(0).setConstant(-a);
     right.col(1) = -a * c - Vector::Constant(count, b);
-    const Matrix k = system.partialPivLu().solve(right);
+    const Matrix k = dense::Lu(system).solve(right);
     Eigen::Matrix2d m;
     m << 1.0, 1.0, 0.0, 1.0;
     m.row(0) += b_position.transpose() * k;
@@ -240,7 +242,7 @@ struct SchemeGrowth::Stages {
         Matrix right = -a * x - b * v;
         if (a_position(i, i) != 0.0 || a_velocity(i, i) != 0.0) {
           const Matrix system = Matrix::Identity(n, n) + a_position(i, i) * a + a_velocity(i, i) * b;
-          right = system.partialPivLu().solve(right).eval();
+          right = dense::Lu(system).solve(right);
         }
         k[static_cast<std::size_t>(i)] = right;
       }
@@ -251,7 +253,7 @@ struct SchemeGrowth::Stages {
         for (Index j = 0; j < count; ++j)
           system.block(i * n, j * n, n, n) += a_position(i, j) * a + a_velocity(i, j) * b;
       }
-      const Matrix all = system.partialPivLu().solve(right);
+      const Matrix all = dense::Lu(system).solve(right);
       for (Index i = 0; i < count; ++i) k[static_cast<std::size_t>(i)] = all.middleRows(i * n, n);
     }
     Matrix m(2 * n, 2 * n);

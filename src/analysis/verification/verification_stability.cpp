@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "analysis/verification/verification.hpp"
+#include "dense/factorisations.hpp"
 #include "ode/functor_system.hpp"
 #include "schemes/property_list.hpp"
 
@@ -131,7 +132,7 @@ double compare_nystrom(const Integrator& integrator, const schemes::NystromValue
     if (!why_not_applicable(integrator.info(), *system).empty()) continue;
     // k = −ω²(q e + v c + Ā k) − 2δ(v e + A k).
     const Vector ones = Vector::Ones(s);
-    const Eigen::PartialPivLU<Matrix> lu(
+    const dense::Lu lu(
         Matrix(Matrix::Identity(s, s) + omega_squared * a_position + 2.0 * delta * a_velocity));
     const Vector by_position = lu.solve(Vector(-omega_squared * ones));
     const Vector by_velocity = lu.solve(Vector(-omega_squared * c - 2.0 * delta * ones));

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/error.hpp"
+#include "dense/eigenvalues.hpp"
 #include "integrators/loop/stepper.hpp"
 
 namespace fw::integrators {
@@ -133,9 +133,9 @@ class GautschiStepper final : public Stepper {
       }
     }
     const Matrix symmetric = 0.5 * (A + A.transpose());
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric);
-    vectors_ = solver.eigenvectors();
-    frequency_ = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    dense::SymmetricEigen eigen = dense::symmetric_eigen(symmetric);
+    vectors_ = std::move(eigen.vectors);
+    frequency_ = eigen.values.cwiseMax(0.0).cwiseSqrt();
   }
 
   /// z and ż of the initial state.
