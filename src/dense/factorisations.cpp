@@ -17,7 +17,7 @@ Vector Lu::solve(const Vector& b) const {
   return factors_->lu.solve(b);
 }
 
-Matrix Lu::solve(const Matrix& B) const {
+Matrix Lu::solve_all(const Matrix& B) const {
   return factors_->lu.solve(B);
 }
 

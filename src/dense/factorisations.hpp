@@ -15,7 +15,7 @@ class Lu {
   /// A⁻¹ b; `b` has n entries.
   Vector solve(const Vector& b) const;
   /// A⁻¹ B; `B` has n rows.
-  Matrix solve(const Matrix& B) const;
+  Matrix solve_all(const Matrix& B) const;
 
  private:
   struct Factors;

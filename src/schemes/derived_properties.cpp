@@ -59,7 +59,7 @@ class OscillatorMatrix {
 
   Propagation at(double z) const {
     const Matrix system = Matrix::Identity(s_, s_) + z * z * A_;
-    const Eigen::Matrix<double, Eigen::Dynamic, 2> stages = dense::Lu(system).solve(Matrix(stage_));
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> stages = dense::Lu(system).solve_all(stage_);
     const Eigen::Matrix2d change = -z * z * (out_ * stages);
     Eigen::Matrix2d m;
     m << 1.0, 1.0, 0.0, 1.0;

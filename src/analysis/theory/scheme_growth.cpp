@@ -147,7 +147,7 @@ Matrix verlet_recurrence(LinearRule rule, const Matrix& a, const Matrix& b) {
   const Matrix one = Matrix::Identity(n, n);
   if (rule == LinearRule::verlet_backward_velocity) return companion(2.0 * one - a - b, b - one);
   const dense::Lu implicit(one + 0.5 * b);
-  return companion(implicit.solve(Matrix(2.0 * one - a)), implicit.solve(Matrix(0.5 * b - one)));
+  return companion(implicit.solve_all(2.0 * one - a), implicit.solve_all(0.5 * b - one));
 }
 
 using WideComplex = std::complex<Float128>;
@@ -216,7 +216,7 @@ struct SchemeGrowth::Stages {
     Matrix right(count, 2);
     right.col(0).setConstant(-a);
     right.col(1) = -a * c - Vector::Constant(count, b);
-    const Matrix k = dense::Lu(system).solve(right);
+    const Matrix k = dense::Lu(system).solve_all(right);
     Eigen::Matrix2d m;
     m << 1.0, 1.0, 0.0, 1.0;
     m.row(0) += b_position.transpose() * k;
@@ -242,7 +242,7 @@ struct SchemeGrowth::Stages {
         Matrix right = -a * x - b * v;
         if (a_position(i, i) != 0.0 || a_velocity(i, i) != 0.0) {
           const Matrix system = Matrix::Identity(n, n) + a_position(i, i) * a + a_velocity(i, i) * b;
-          right = dense::Lu(system).solve(right);
+          right = dense::Lu(system).solve_all(right);
         }
         k[static_cast<std::size_t>(i)] = right;
       }
@@ -253,7 +253,7 @@ struct SchemeGrowth::Stages {
         for (Index j = 0; j < count; ++j)
           system.block(i * n, j * n, n, n) += a_position(i, j) * a + a_velocity(i, j) * b;
       }
-      const Matrix all = dense::Lu(system).solve(right);
+      const Matrix all = dense::Lu(system).solve_all(right);
       for (Index i = 0; i < count; ++i) k[static_cast<std::size_t>(i)] = all.middleRows(i * n, n);
     }
     Matrix m(2 * n, 2 * n);
