@@ -42,10 +42,7 @@ std::string describe_method(const catalog::MethodEntry& entry) {
                            : info.is_l_stable ? "A-stable, L-stable"
                            : info.is_a_stable ? "A-stable"
                                               : "conditional");
-  line("works on", info.needs_springs           ? "mass-spring systems"
-                   : info.needs_position_forces ? "M q'' = f(t, q)"
-                   : info.needs_second_order    ? "M q'' = f(t, q, q')"
-                                                : "y' = f(t, y)");
+  line("works on", works_on(info.needs));
   line("literature", info.reference);
   if (!entry.options.empty()) {
     text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name,

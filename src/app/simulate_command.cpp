@@ -178,7 +178,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   scene.velocity.resize(0);
   const auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
   ivp.system = system;
-  if (integrator->info().needs_second_order && ivp.system->second_order() == nullptr) {
+  if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
   tell_of_short_last_step(control, count, arguments.end_time);

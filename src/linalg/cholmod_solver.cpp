@@ -39,7 +39,7 @@ cholmod_sparse CholmodSolver::view() {
 }
 
 Status CholmodSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) cholmod_free_factor(&factor_, &common_);
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   cholmod_sparse sparse = view();

@@ -7,7 +7,8 @@
 namespace fw::linalg {
 
 /// Supernodal LLᵀ of a symmetric positive definite matrix by CHOLMOD on dense kernels of the BLAS
-/// [Chen, Davis, Hager, Rajamanickam 2008]; the lower triangle is read. The ordering is made once.
+/// [Chen, Davis, Hager, Rajamanickam 2008]; the lower triangle is read. The ordering is made once for a
+/// pattern.
 class CholmodSolver final : public LinearSolver {
  public:
   CholmodSolver();
@@ -25,7 +26,6 @@ class CholmodSolver final : public LinearSolver {
   cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
   cholmod_dense *solution_ = nullptr, *work_y_ = nullptr, *work_e_ = nullptr;
-  SparseMatrix matrix_;
   Vector residual_;
 };
 

@@ -32,12 +32,12 @@ struct Failure<Eigen::SparseLU<SparseMatrix, Ordering>> {
 
 template <class Factorisation>
 Status EigenDirectSolver<Factorisation>::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) is_analysed_ = false;
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
-  if (!analysed_) {
+  if (!is_analysed_) {
     factorisation_.analyzePattern(matrix_);
-    analysed_ = true;
+    is_analysed_ = true;
   }
   factorisation_.factorize(matrix_);
   return factorisation_.info() == Eigen::Success ? Status{} : Failure<Factorisation>::status();
@@ -64,7 +64,10 @@ SparseLuSolver::~SparseLuSolver() {
 }
 
 Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) {
+    klu_free_numeric(&numeric_, &common_);
+    klu_free_symbolic(&symbolic_, &common_);
+  }
   ++work.factorisations;
   int* outer = matrix_.outerIndexPtr();
   int* inner = matrix_.innerIndexPtr();

@@ -9,7 +9,7 @@
 
 namespace fw::linalg {
 
-/// One of Eigen's sparse factorisations. The pattern is analysed once; Eigen allocates work space inside each
+/// One of Eigen's sparse factorisations. A pattern is analysed once; Eigen allocates work space inside each
 /// numerical factorisation.
 template <class Factorisation>
 class EigenDirectSolver final : public LinearSolver {
@@ -20,9 +20,8 @@ class EigenDirectSolver final : public LinearSolver {
 
  private:
   Factorisation factorisation_;
-  SparseMatrix matrix_;
   Vector residual_;
-  bool analysed_ = false;
+  bool is_analysed_ = false;
 };
 
 /// LLᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
@@ -35,8 +34,8 @@ using SparseLdltSolver =
 /// LU of any regular matrix by supernodes.
 using EigenSparseLuSolver = EigenDirectSolver<Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>>;
 
-/// P A Q = L U by KLU. The ordering is made once; later matrices are refactorised with the same pivots while
-/// these stay good (reciprocal condition estimate), and pivoted anew otherwise.
+/// P A Q = L U by KLU. The ordering is made once for a pattern; later matrices are refactorised with the same
+/// pivots while these stay good (reciprocal condition estimate), and pivoted anew otherwise.
 class SparseLuSolver final : public LinearSolver {
  public:
   SparseLuSolver();
@@ -52,7 +51,6 @@ class SparseLuSolver final : public LinearSolver {
   klu_common common_;
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
-  SparseMatrix matrix_;
   Vector residual_;
 };
 

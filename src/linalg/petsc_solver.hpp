@@ -32,8 +32,7 @@ class PetscSolver final : public LinearSolver {
  private:
   class Engine;
   LinearSolverOptions options_;
-  std::unique_ptr<Engine> engine_;  ///< made by the first factorise
-  SparseMatrix matrix_;
+  std::unique_ptr<Engine> engine_;  ///< made for each pattern
   Vector residual_;
 };
 

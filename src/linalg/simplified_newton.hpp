@@ -7,7 +7,7 @@
 namespace fw::linalg {
 
 struct SimplifiedNewtonOptions {
-  LinearSolverKind solver = LinearSolverKind::sparse_lu;
+  std::unique_ptr<LinearSolver> (*make_solver)() = default_direct_solver;
   /// The iteration ends when the remaining error, estimated by θ/(1 − θ)·‖correction‖∞, is at most this
   /// fraction of the scale. The default is the level of rounding, so that the iteration never limits an
   /// observed order.
@@ -19,7 +19,8 @@ struct SimplifiedNewtonOptions {
 /// Newton's iteration with one factorised matrix that is kept, over iterations and over solves, while its
 /// rate of convergence θ_k = ‖δ_k‖/‖δ_{k−1}‖ is good [Hairer, Wanner 1996, IV.8]. Where it diverges with an
 /// old matrix it starts again with a new one, and where it diverges with a new matrix the damped `Newton`
-/// takes over. All work space is allocated at construction, but for the factorisations of the linear solver.
+/// takes over. A matrix of another `pattern_revision` of the problem is not kept. All work space is allocated
+/// at construction, but for the factorisations of the linear solver.
 class SimplifiedNewton {
  public:
   SimplifiedNewton(Index size, const SimplifiedNewtonOptions& options);
@@ -48,6 +49,7 @@ class SimplifiedNewton {
   Newton damped_;
   Vector residual_, correction_, start_;
   double parameter_ = 0.0;
+  std::uint64_t revision_ = 0;  ///< of the pattern of the matrix
   bool has_matrix_ = false;
   bool is_slow_ = false;
   Status failure_;

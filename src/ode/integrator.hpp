@@ -7,6 +7,7 @@
 
 #include "core/status.hpp"
 #include "core/work.hpp"
+#include "ode/capabilities.hpp"
 #include "ode/ivp.hpp"
 #include "ode/observer.hpp"
 #include "ode/step_control.hpp"
@@ -42,10 +43,7 @@ struct MethodInfo {
   bool conserves_energy = false;  ///< of systems without damping, exactly
   bool is_a_stable = false;
   bool is_l_stable = false;
-  bool needs_second_order = false;     ///< works on M q̈ = f(t, q, v) only
-  bool needs_position_forces = false;  ///< works where f = f(t, q) only
-  bool needs_springs = false;          ///< works on mass-spring systems only
-  bool needs_force_splitting = false;  ///< works where forces come in a stiff and a soft part
+  Capabilities needs{};  ///< what the system must have; none: any ẏ = f(t, y)
   /// What iterative solvers leave of their equations, relative: conservation holds to it. 0: rounding.
   double iteration_tolerance = 0.0;
   std::string formula{};    ///< one step in formula
@@ -54,6 +52,10 @@ struct MethodInfo {
 
 /// Why a scheme cannot run on this system, as a clause for people ("the method needs ..."); empty if it can.
 std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system);
+
+/// The order that a scheme claims on this system: `order_with_velocity_forces` where forces depend on
+/// velocity, else `order`.
+int order_on(const MethodInfo& info, const OdeSystem& system);
 
 /// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double
 /// cannot show.

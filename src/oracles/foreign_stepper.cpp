@@ -54,10 +54,7 @@ StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, con
     throw InputError(fmt::format("method \"{}\" has a fixed step: give a step, not tolerances", info.name));
   }
   AdaptiveStep tolerances = std::get<AdaptiveStep>(control);
-  if (!(tolerances.relative_tolerance > 0.0) || !(tolerances.absolute_tolerance > 0.0)) {
-    throw InputError(fmt::format("tolerances: found {} and {}, expected both > 0",
-                                 tolerances.relative_tolerance, tolerances.absolute_tolerance));
-  }
+  check_tolerances(info.name, tolerances);
   tolerances.relative_tolerance =
       std::min(tolerances.relative_tolerance,
                std::max(tolerances.relative_tolerance * scaling.factor, scaling.smallest_relative));

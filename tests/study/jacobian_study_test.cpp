@@ -182,7 +182,6 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
         void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override {
           system_->jacobian_product(t, y, w, out);
         }
-        const SecondOrderSystem* second_order() const override { return nullptr; }
 
        private:
         std::shared_ptr<const OdeSystem> system_;

@@ -167,14 +167,6 @@ Float128 principal_excess(const schemes::MultistepFormula& formula, double y) {
   return zeta.real() * zeta.real() + zeta.imag() * zeta.imag() - 1;
 }
 
-std::optional<schemes::NystromValues<Float128>> nystrom_values(const schemes::SchemeData& data) {
-  if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&data))
-    return schemes::values<Float128>(*nystrom);
-  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&data))
-    return schemes::as_nystrom(*splitting);
-  return std::nullopt;
-}
-
 }  // namespace
 
 /// A Nyström method in double.
@@ -294,7 +286,7 @@ SchemeGrowth::SchemeGrowth(std::shared_ptr<const Integrator> integrator, const L
   } else if (const auto* formula = std::get_if<schemes::MultistepFormula>(&data)) {
     basis_ = GrowthBasis::characteristic_polynomial;
     formula_ = *formula;
-  } else if (const auto nystrom = nystrom_values(data)) {
+  } else if (const auto nystrom = schemes::nystrom_values(data)) {
     basis_ = GrowthBasis::oscillator_matrix;
     stages_ = std::make_shared<const Stages>(*nystrom);
   } else if (rule_ == LinearRule::exact) {
@@ -319,7 +311,7 @@ bool SchemeGrowth::find_growth_at_every_step(const schemes::SchemeData& data) co
              principal_excess(*formula_, 0.02) > above_rounding;
     }
     case GrowthBasis::oscillator_matrix:
-      return schemes::oscillator_stability(*nystrom_values(data)).interval < shortest_interval;
+      return schemes::oscillator_stability(*schemes::nystrom_values(data)).interval < shortest_interval;
     case GrowthBasis::two_step_recurrence:  // Verlet's without damping, stable up to ωh = 2
     case GrowthBasis::exponential:
       return false;
@@ -340,13 +332,13 @@ double SchemeGrowth::of_eigenvalue(Complex z) const {
       return schemes::amplification(*formula_, z.real(), z.imag());
     case GrowthBasis::exponential:
       // Of a scheme for forces f(t, q), nothing is said where there is damping.
-      if (integrator_->info().needs_position_forces && z.real() != 0.0) return not_known;
+      if (integrator_->info().needs.has(Capability::position_forces) && z.real() != 0.0) return not_known;
       return std::exp(z.real());
     case GrowthBasis::oscillator_matrix:
     case GrowthBasis::two_step_recurrence:
       break;
     case GrowthBasis::single_steps:
-      if (integrator_->info().needs_second_order || carries_more(integrator_->info())) break;
+      if (integrator_->info().needs.has(Capability::second_order) || carries_more(integrator_->info())) break;
       return growth_of_steps(
           *integrator_, std::make_shared<FunctorSystem<PlanarFlow>>(2, PlanarFlow{z.real(), z.imag()}), 1.0);
   }
@@ -390,8 +382,8 @@ bool SchemeGrowth::is_of_whole_step(const LinearModes& modes,
     case GrowthBasis::two_step_recurrence:
       return system != nullptr && modes.coupling > 0.0 && modes.stiffness.size() > 0;
     case GrowthBasis::single_steps:
-      return system != nullptr && (integrator_->info().needs_force_splitting || modes.coupling > 0.0 ||
-                                   modes.vibrations.empty() || !modes.is_complete);
+      return system != nullptr && (integrator_->info().needs.has(Capability::force_splitting) ||
+                                   modes.coupling > 0.0 || modes.vibrations.empty() || !modes.is_complete);
   }
   return false;
 }
@@ -428,8 +420,9 @@ double SchemeGrowth::of_system(const LinearModes& modes, double h,
 
 std::optional<double> SchemeGrowth::factor_of_decay(double x) const {
   if (basis_ == GrowthBasis::stability_function) return (*R_)({x, 0.0}).real();
-  if (basis_ == GrowthBasis::exponential && !integrator_->info().needs_second_order) return std::exp(x);
-  if (basis_ != GrowthBasis::single_steps || integrator_->info().needs_second_order ||
+  if (basis_ == GrowthBasis::exponential && !integrator_->info().needs.has(Capability::second_order))
+    return std::exp(x);
+  if (basis_ != GrowthBasis::single_steps || integrator_->info().needs.has(Capability::second_order) ||
       carries_more(integrator_->info())) {
     return std::nullopt;
   }

@@ -32,7 +32,7 @@ Solution one_step(const Integrator& integrator, const Ivp& ivp) {
 }
 
 bool runs_first_order_systems(const MethodInfo& info) {
-  return !info.needs_second_order && info.has_fixed_step && info.order > 0;
+  return !info.needs.has(Capability::second_order) && info.has_fixed_step && info.order > 0;
 }
 
 /// A system that hands out unit slopes: the j-th call of its right-hand side returns e_j and keeps the
@@ -54,7 +54,6 @@ class ProbingSystem final : public OdeSystem {
   SparseMatrix jacobian_pattern() const override { return SparseMatrix(size_, size_); }
   void jacobian(double, ConstVectorRef, SparseMatrix&) const override { refuse(); }
   void jacobian_product(double, ConstVectorRef, ConstVectorRef, VectorRef) const override { refuse(); }
-  const SecondOrderSystem* second_order() const override { return nullptr; }
 
   mutable std::vector<double> times{};
   mutable std::vector<Vector> arguments{};
@@ -183,7 +182,7 @@ void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<Prop
 void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
   PropertyCheck check{.property = "evaluations per step"};
-  if (!info.is_explicit || !info.has_fixed_step || info.needs_springs) {
+  if (!info.is_explicit || !info.has_fixed_step || info.needs.has(Capability::springs)) {
     check.reason = "exact for explicit schemes only";
     checks.push_back(check);
     return;

@@ -88,7 +88,7 @@ double compare_runge_kutta(const Integrator& integrator, const schemes::Stabilit
         std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
   };
   const MethodInfo& info = integrator.info();
-  if (!info.needs_second_order) {
+  if (!info.needs.has(Capability::second_order)) {
     const LinearFlow flows[] = {
         {-0.3, 0.2, -0.2, -0.3}, {-1.1, 0.7, -0.7, -1.1}, {0.4, -0.9, 0.9, 0.4}, {-2.5, 0.6, 0.0, -0.4}};
     for (const LinearFlow& flow : flows) {
@@ -253,14 +253,6 @@ void check_limit(const char* property, double limit, Growth growth, Norm norm,
   checks.push_back(check);
 }
 
-std::optional<schemes::NystromValues<Float128>> nystrom_values(const schemes::SchemeData& data) {
-  if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&data))
-    return schemes::values<Float128>(*nystrom);
-  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&data))
-    return schemes::as_nystrom(*splitting);
-  return std::nullopt;
-}
-
 }  // namespace
 
 void verify_stability_function(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
@@ -295,7 +287,7 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
   const MethodInfo& info = scheme.integrator.info();
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (!info.has_fixed_step) return;
-  if (derived.stability && !info.needs_second_order) {
+  if (derived.stability && !info.needs.has(Capability::second_order)) {
     const schemes::StabilityFunction& R = *derived.stability_function;
     check_limit(
         "real stability interval", derived.stability->real_interval,
@@ -310,7 +302,7 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
         },
         [&](double x, int steps) { return norm_after(scheme.integrator, 0.0, x, steps); }, checks);
   }
-  if (const auto nystrom = nystrom_values(scheme.data)) {
+  if (const auto nystrom = schemes::nystrom_values(scheme.data)) {
     check_limit(
         "stability interval, oscillator", derived.oscillator->interval,
         [&](double x) { return schemes::oscillator_growth(*nystrom, x); },
@@ -332,15 +324,15 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
     const double real = -r * std::cos(angle), imaginary = r * std::sin(angle);
     // λ and its conjugate: as a first-order system, or the oscillator with ω² = r², δ = −Re λ.
     const std::shared_ptr<const OdeSystem> system =
-        info.needs_second_order
+        info.needs.has(Capability::second_order)
             ? linear_oscillator(r * r, degrees > 89.9 ? 0.0 : -real)
             : std::make_shared<FunctorSystem<LinearFlow>>(2, LinearFlow{real, imaginary, -imaginary, real});
     if (!why_not_applicable(info, *system).empty()) return;
     ran = true;
     if (info.carries_more_than_state || info.is_multistep) {
-      Eigen::Vector2d y{1.0, info.needs_second_order ? 0.5 * r : 0.0};
+      Eigen::Vector2d y{1.0, info.needs.has(Capability::second_order) ? 0.5 * r : 0.0};
       const Status status = steps_of(scheme.integrator, system, 400, y);
-      const double size = info.needs_second_order ? std::hypot(y[0], y[1] / r) : y.norm();
+      const double size = info.needs.has(Capability::second_order) ? std::hypot(y[0], y[1] / r) : y.norm();
       bounded = bounded && status.ok() && size <= 10.0;
       if (r > 1e5) decay = std::max(decay, size);
       return;
@@ -348,7 +340,8 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
     Status status;
     const Eigen::Matrix2d m = step_matrix(scheme.integrator, system, status);
     const double radius = Eigen::EigenSolver<Eigen::Matrix2d>(m, false).eigenvalues().cwiseAbs().maxCoeff();
-    bounded = bounded && status.ok() && radius <= 1.0 + (info.needs_second_order ? 1e-6 : 1e-9);
+    bounded =
+        bounded && status.ok() && radius <= 1.0 + (info.needs.has(Capability::second_order) ? 1e-6 : 1e-9);
     if (r > 1e5 && degrees < 90.0) decay = std::max(decay, radius);  // e^z itself does not decay on the axis
   };
   for (const double r : {0.1, 0.5, 1.0, 2.0, 4.0, 10.0, 100.0, 1e6}) {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <variant>
 
+#include "integrators/energy_momentum/implicit_velocity.hpp"
 #include "integrators/loop/mass_spring_access.hpp"
-#include "integrators/loop/stepper.hpp"
-#include "linalg/newton.hpp"
 #include "mechanics/mass_spring_force.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "mechanics/obstacle_tangent.hpp"
@@ -19,42 +18,27 @@ namespace {
 using mechanics::add_block;
 using mechanics::Matrix3;
 
-class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProblem {
+class DiscreteGradientStepper final : public ImplicitVelocityStepper {
  public:
   DiscreteGradientStepper(const mechanics::MassSpringSystem& system, Work& work)
-      : system_(system),
+      : ImplicitVelocityStepper(system, work),
+        system_(system),
         model_(system.model()),
         work_(work),
-        newton_(system.degrees_of_freedom(), linalg::LinearSolverKind::sparse_lu),
         pattern_(static_cast<int>(system.particle_count()), model_.springs.first, model_.springs.second),
         matrix_(pattern_.tangent()),
-        start_position_(system.degrees_of_freedom()),
-        start_velocity_(system.degrees_of_freedom()),
         position_(system.degrees_of_freedom()),
         middle_position_(system.degrees_of_freedom()),
         middle_velocity_(system.degrees_of_freedom()),
         force_(system.degrees_of_freedom()) {}
 
-  Status step(double, double h, VectorRef y) override {
-    const Index n = force_.size();
-    step_ = h;
-    start_position_ = y.head(n);
-    start_velocity_ = y.tail(n);
-    auto v = y.tail(n);
-    const double scale =
-        std::max(v.lpNorm<Eigen::Infinity>(), 1e-4 * start_position_.lpNorm<Eigen::Infinity>() / h);
-    if (Status status = newton_.solve(*this, v, scale, work_); !status.ok()) return status;
-    y.head(n) = start_position_ + (0.5 * h) * (start_velocity_ + v);
-    return {};
-  }
-
  private:
   bool is_free(int i) const { return system_.fixed()[3 * static_cast<std::size_t>(i)] == 0; }
 
   void move(ConstVectorRef v) {
-    position_ = start_position_ + (0.5 * step_) * (start_velocity_ + v);
-    middle_position_ = 0.5 * (start_position_ + position_);
-    middle_velocity_ = 0.5 * (start_velocity_ + v);
+    position_ = start_position() + (0.5 * length()) * (start_velocity() + v);
+    middle_position_ = 0.5 * (start_position() + position_);
+    middle_velocity_ = 0.5 * (start_velocity() + v);
   }
 
   /// Calls `visit(e, i, j, force)` with the discrete force of each spring.
@@ -68,13 +52,13 @@ class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProb
         const auto difference = [&](const Vector& x) { return load3(x.data(), j) - load3(x.data(), i); };
         visit(e, i, j,
               mechanics::discrete_spring_force<law()>(mechanics::spring_parameters(springs, e),
-                                                      difference(start_position_), difference(position_),
+                                                      difference(start_position()), difference(position_),
                                                       difference(middle_velocity_)));
       }
     });
   }
 
-  void residual(ConstVectorRef v, VectorRef out) override {
+  void impulse(ConstVectorRef v, VectorRef out) override {
     move(v);
     const auto particles = static_cast<int>(system_.particle_count());
     const double* x = middle_position_.data();
@@ -102,7 +86,7 @@ class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProb
     }
     for (const int i : model_.fixed) store3(f, i, Vec3<double>{});
     ++work_.rhs_evaluations;
-    out = system_.mass().cwiseProduct(v - start_velocity_) - step_ * force_;
+    out = length() * force_;
   }
 
   const SparseMatrix& matrix(ConstVectorRef v) override {
@@ -111,8 +95,8 @@ class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProb
     matrix_.coeffs().setZero();
     double* values = matrix_.valuePtr();
     // ∂q'/∂v' = ½h, and ½ for every mean.
-    const double per_end = -0.5 * step_ * step_, per_mean = -0.25 * step_ * step_,
-                 per_velocity = -0.5 * step_;
+    const double per_end = -0.5 * length() * length(), per_mean = -0.25 * length() * length(),
+                 per_velocity = -0.5 * length();
     const auto add_point = [&](int i, const Matrix3& block) {
       if (is_free(i)) add_block(values, pattern_.diagonal(i), 1.0, block);
     };
@@ -150,11 +134,9 @@ class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProb
   const mechanics::MassSpringSystem& system_;
   const mechanics::MassSpringModel& model_;
   Work& work_;
-  linalg::Newton newton_;
   mechanics::BlockPattern pattern_;
   SparseMatrix matrix_;
-  Vector start_position_, start_velocity_, position_, middle_position_, middle_velocity_, force_;
-  double step_ = 0.0;
+  Vector position_, middle_position_, middle_velocity_, force_;
 };
 
 }  // namespace
@@ -170,8 +152,7 @@ std::unique_ptr<Integrator> make_discrete_gradient() {
                   .is_symmetric = true,
                   .conserves_energy = true,
                   .is_a_stable = true,
-                  .needs_second_order = true,
-                  .needs_springs = true,
+                  .needs = {Capability::second_order, Capability::springs},
                   .formula =
                       "q' = q + ½h (v + v');  M (v' - v) = h f;  spring force "
                       "(V(L') - V(L))/(L' - L) (d + d')/(L + L')",

@@ -190,8 +190,7 @@ std::unique_ptr<Integrator> make_gautschi(const GautschiOptions& options) {
                   .is_symplectic = options.filter != TrigonometricFilter::gautschi,
                   .is_symmetric = options.filter != TrigonometricFilter::gautschi,
                   .is_a_stable = true,
-                  .needs_second_order = true,
-                  .needs_position_forces = true,
+                  .needs = {Capability::second_order, Capability::position_forces},
                   .formula =
                       "x' = cos(hW) x + W^-1 sin(hW) v + ½h² Psi g;  v' = -W sin(hW) x + cos(hW) v + "
                       "½h (Psi0 g + Psi1 g');  g = f + W² x",

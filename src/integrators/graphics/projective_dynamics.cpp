@@ -139,8 +139,7 @@ std::unique_ptr<Integrator> make_projective_dynamics(const ProjectiveDynamicsOpt
                   .order_with_velocity_forces = 1,
                   .stages = options.iterations,
                   .is_explicit = false,
-                  .needs_second_order = true,
-                  .needs_springs = true,
+                  .needs = {Capability::second_order, Capability::springs},
                   .formula =
                       "repeat: p = l0 d'/|d'|;  (M + h²L) q' = M (q + h v) + h² (J p + f_ext);  "
                       "v' = (q' - q)/h",

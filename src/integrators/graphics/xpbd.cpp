@@ -136,8 +136,7 @@ std::unique_ptr<Integrator> make_xpbd(const XpbdOptions& options) {
                   .order_with_velocity_forces = 1,
                   .stages = options.substeps,
                   .is_explicit = false,
-                  .needs_second_order = true,
-                  .needs_springs = true,
+                  .needs = {Capability::second_order, Capability::springs},
                   .formula =
                       "q' = q + h v + h² M^-1 f_ext;  per spring q' += M^-1 grad C' dl with "
                       "dl = -(C + l/(k h²) + ...)/(grad C M^-1 grad C' + 1/(k h²));  v' = (q' - q)/h",

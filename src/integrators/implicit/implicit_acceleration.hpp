@@ -39,6 +39,7 @@ class ImplicitAcceleration final : private linalg::NewtonProblem {
  private:
   void residual(ConstVectorRef a, VectorRef out) override;
   const SparseMatrix& matrix(ConstVectorRef a) override;
+  std::uint64_t pattern_revision() const override { return system_.pattern_revision(); }
   void evaluate(ConstVectorRef a);
 
   const SecondOrderSystem& system_;

@@ -9,7 +9,7 @@
 namespace fw::integrators {
 
 /// Solves y' = w + c f(t, y') for y', the equation of every implicit scheme with one unknown stage. Newton's
-/// iteration to convergence with KLU; a second-order system is reduced to its accelerations (see
+/// iteration to convergence with a direct solver; a second-order system is reduced to its accelerations (see
 /// `ImplicitAcceleration`).
 class ImplicitUpdate {
  public:

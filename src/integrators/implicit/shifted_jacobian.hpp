@@ -8,7 +8,8 @@
 
 namespace fw::integrators {
 
-/// The matrix I − ηJ at a state, factorised by KLU. On a second-order system it is reduced to half its size:
+/// The matrix I − ηJ at a state, factorised by a direct solver. On a second-order system it is reduced to
+/// half its size:
 ///   x_q − η x_v = r_q,   (M − ηD − η²K) x_v = M r_v + η K r_q.
 class ShiftedJacobian {
  public:

@@ -20,24 +20,6 @@ constexpr double stretch_to_end = 1.01;
 constexpr double smallest_step_in_ulps = 16.0;
 constexpr int most_failures_in_a_row = 100;
 
-void check_tolerances(const MethodInfo& info, const AdaptiveStep& control) {
-  const auto require = [&](bool holds, const std::string& what) {
-    if (!holds) throw InputError(fmt::format("method \"{}\": {}", info.name, what));
-  };
-  require(std::isfinite(control.relative_tolerance) && control.relative_tolerance > 0.0,
-          fmt::format("relative tolerance: found {}, expected > 0", control.relative_tolerance));
-  require(std::isfinite(control.absolute_tolerance) && control.absolute_tolerance > 0.0,
-          fmt::format("absolute tolerance: found {}, expected > 0", control.absolute_tolerance));
-  require(control.initial_step >= 0.0 && std::isfinite(control.initial_step),
-          fmt::format("initial step: found {}, expected >= 0", control.initial_step));
-  require(control.minimum_step >= 0.0 && control.maximum_step > control.minimum_step,
-          fmt::format("step limits: found {} to {}, expected 0 <= minimum < maximum", control.minimum_step,
-                      control.maximum_step));
-  require(control.initial_step == 0.0 || control.initial_step >= control.minimum_step,
-          fmt::format("initial step: found {}, expected at least the minimum of {}", control.initial_step,
-                      control.minimum_step));
-}
-
 /// One run with steps chosen by the error estimate.
 class AdaptiveRun {
  public:
@@ -166,7 +148,7 @@ Solution AdaptiveIntegrator::do_solve(const Ivp& ivp, const StepControl& control
         ivp, *fixed, observer);
   }
   const auto& adaptive = std::get<AdaptiveStep>(control);
-  check_tolerances(info_, adaptive);
+  check_tolerances(info_.name, adaptive);
   return AdaptiveRun(info_, options_, ivp, adaptive, observer).run(make_stepper_);
 }
 

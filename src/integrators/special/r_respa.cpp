@@ -8,6 +8,7 @@
 #include "integrators/implicit/implicit_kick.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "ode/force_splitting.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::integrators {
 
@@ -23,6 +24,7 @@ class ForcePart final : public SecondOrderSystem {
       : whole_(whole),
         splitting_(*whole.force_splitting()),
         kind_(kind),
+        watch_(whole.pattern_revision()),
         product_(whole.degrees_of_freedom()) {
     if (whole.force_class() == ForceClass::velocity) damping_ = whole.tangent_pattern();
   }
@@ -57,6 +59,7 @@ class ForcePart final : public SecondOrderSystem {
   void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq, ConstVectorRef dv,
                        VectorRef out) const override {
     if (!dq.isZero(0.0)) throw std::logic_error("a part of the forces multiplies by its damping only");
+    if (watch_.has_changed(whole_.pattern_revision())) damping_ = whole_.tangent_pattern();
     splitting_.stiff_damping(t, q, v, damping_);
     product_.noalias() = damping_ * dv;
     if (kind_ == Kind::stiff) {
@@ -66,12 +69,13 @@ class ForcePart final : public SecondOrderSystem {
     whole_.tangent_product(t, q, v, dq, dv, out);
     out -= product_;
   }
-  const ForceSplitting* force_splitting() const override { return nullptr; }
+  std::uint64_t pattern_revision() const override { return whole_.pattern_revision(); }
 
  private:
   const SecondOrderSystem& whole_;
   const ForceSplitting& splitting_;
   Kind kind_;
+  mutable PatternWatch watch_;
   mutable SparseMatrix damping_;  ///< of the stiff part
   mutable Vector product_;
 };
@@ -143,8 +147,7 @@ std::unique_ptr<Integrator> make_r_respa(const RespaOptions& options) {
                   .stages = options.inner_steps + 1,
                   .is_symplectic = true,
                   .is_symmetric = true,
-                  .needs_second_order = true,
-                  .needs_force_splitting = true,
+                  .needs = {Capability::second_order, Capability::force_splitting},
                   .formula =
                       "v += ½h M^-1 f_soft;  n times velocity Verlet of step h/n with f_stiff;  "
                       "v' = v + ½h M^-1 f_soft'",

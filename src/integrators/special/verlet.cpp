@@ -70,7 +70,7 @@ std::unique_ptr<Integrator> make_verlet(VerletVelocity velocity) {
                   .is_multistep = true,
                   .is_symplectic = true,
                   .is_symmetric = true,
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula = central
                                  ? "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_{n+1} - x_{n-1})/(2h))"
                                  : "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_n - x_{n-1})/h)",

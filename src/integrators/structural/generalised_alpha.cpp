@@ -33,7 +33,7 @@ std::unique_ptr<Integrator> make_generalised_alpha(const GeneralisedAlphaOptions
       .carries_more_than_state = true,
       .is_a_stable = parameters.is_unconditionally_stable(),
       .is_l_stable = options.rho_infinity == 0.0,
-      .needs_second_order = true,
+      .needs = {Capability::second_order},
       .formula =
           "M ((1 - alpha_m) a' + alpha_m a) = (1 - alpha_f) f(t+h, q', v') + alpha_f f(t, q, v);  "
           "q', v' as Newmark's",

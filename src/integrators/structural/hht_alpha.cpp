@@ -24,7 +24,7 @@ std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options) {
                   .is_explicit = false,
                   .carries_more_than_state = true,
                   .is_a_stable = parameters.is_unconditionally_stable(),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "M a' = (1 + alpha) f(t+h, q', v') - alpha f(t, q, v);  Newmark with "
                       "gamma = ½ - alpha, beta = ¼(1 - alpha)²",

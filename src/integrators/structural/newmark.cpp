@@ -25,7 +25,7 @@ std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options) {
                   .is_symplectic = options.beta == 0.0 && options.gamma == 0.5,
                   .is_symmetric = options.gamma == 0.5,
                   .is_a_stable = parameters.is_unconditionally_stable(),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "q' = q + h v + h² ((½ - beta) a + beta a');  v' = v + h ((1 - gamma) a + gamma a');  "
                       "M a' = f(t+h, q', v')",

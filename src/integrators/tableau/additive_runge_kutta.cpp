@@ -150,8 +150,7 @@ std::unique_ptr<Integrator> make_additive_runge_kutta(const AdditiveTableau& tab
   info.is_adaptive = !tableau.explicit_part.b_embedded.empty() && !tableau.implicit_part.b_embedded.empty();
   info.stages = tableau.stages();
   info.is_explicit = false;
-  info.needs_second_order = true;
-  info.needs_force_splitting = true;
+  info.needs = {Capability::second_order, Capability::force_splitting};
   info.formula =
       "y_i = y + h sum_{j<=i} a_ij f_stiff(y_j) + h sum_{j<i} e_ij f_soft(y_j);  "
       "y' = y + h sum_i b_i f_stiff(y_i) + h sum_i d_i f_soft(y_i)";

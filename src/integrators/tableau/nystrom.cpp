@@ -215,8 +215,8 @@ std::unique_ptr<Integrator> make_nystrom(const NystromTableau& tableau, const Co
       .embedded_order = schemes::embedded_order(tableau),
       .is_symplectic = schemes::is_symplectic(exact),
       .is_symmetric = schemes::is_symmetric(exact),
-      .needs_second_order = true,
-      .needs_position_forces = position_forces,
+      .needs = position_forces ? Capabilities{Capability::second_order, Capability::position_forces}
+                               : Capabilities{Capability::second_order},
       .formula = position_forces
                      ? "k_i = M^-1 f(t + c_i h, x + c_i h v + h² sum_j A_ij k_j);  "
                        "x' = x + h v + h² sum_i B_i k_i;  v' = v + h sum_i b_i k_i"

@@ -209,7 +209,7 @@ std::unique_ptr<Integrator> make_splitting(const schemes::SplittingScheme& schem
                   .stages = static_cast<int>(exact.kicks.size()) - (exact.first_same_as_last ? 1 : 0),
                   .is_symplectic = schemes::is_symplectic(schemes::as_nystrom(scheme)),
                   .is_symmetric = schemes::is_symmetric(schemes::as_nystrom(scheme)),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula = formula(scheme),
                   .reference = scheme.reference};
   return std::make_unique<FixedStepIntegrator>(

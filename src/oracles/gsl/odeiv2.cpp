@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "core/error.hpp"
+#include "ode/pattern_watch.hpp"
 #include "oracles/foreign_stepper.hpp"
 
 namespace fw::oracles {
@@ -113,6 +114,7 @@ class OdeivStepper final : public ForeignStepper {
                         name_, n, largest_dense_system));
       }
       jacobian_ = system_.jacobian_pattern();
+      watch_ = PatternWatch(system_.pattern_revision());
     }
     later_.resize(n);
     earlier_.resize(n);
@@ -225,6 +227,9 @@ class OdeivStepper final : public ForeignStepper {
     return run.guarded([&] {
       const Index n = run.system_.size();
       const ConstVectorMap state(y, n);
+      if (run.watch_.has_changed(run.system_.pattern_revision())) {
+        run.jacobian_ = run.system_.jacobian_pattern();
+      }
       run.system_.jacobian(t, state, run.jacobian_);
       ++run.work_.jacobian_evaluations;
       using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -248,6 +253,7 @@ class OdeivStepper final : public ForeignStepper {
   gsl_odeiv2_system gsl_system_{};
   std::unique_ptr<gsl_odeiv2_driver, DriverDeleter> driver_;
   SparseMatrix jacobian_;
+  PatternWatch watch_{0};  ///< of the Jacobian
   Vector later_, earlier_;
   std::exception_ptr failure_;
   bool is_adaptive_ = false;

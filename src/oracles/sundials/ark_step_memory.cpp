@@ -27,7 +27,7 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
   require(ARKStepSetMaxHnilWarns(memory, std::numeric_limits<int>::max()), "ARKStepSetMaxHnilWarns");
   if (implicit_part_) {
     linear_solver_.emplace(implicit_part_->pattern(), y0, context);
-    require(ARKStepSetLinearSolver(memory, linear_solver_->solver.get(), linear_solver_->matrix.get()),
+    require(ARKStepSetLinearSolver(memory, linear_solver_->solver(), linear_solver_->matrix()),
             "ARKStepSetLinearSolver");
     require(ARKStepSetJacFn(memory, jacobian_function), "ARKStepSetJacFn");
   }
@@ -126,7 +126,7 @@ int ArkStepMemory::jacobian_function(sunrealtype t, N_Vector y, N_Vector, SUNMat
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.implicit_part_->jacobian(t, view(y, run.size_));
     ++run.work_.jacobian_evaluations;
-    SparseDirectSolver::copy(jacobian, J);
+    run.linear_solver_->copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

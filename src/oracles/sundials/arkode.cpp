@@ -118,8 +118,8 @@ std::unique_ptr<Integrator> make_arkode(std::string name, std::string title, Ark
                   .is_explicit = !tables.implicit_part,
                   .is_adaptive = tables.embedded_order > 0,
                   .embedded_order = tables.embedded_order,
-                  .needs_second_order = is_additive,
-                  .needs_force_splitting = is_additive,
+                  .needs = is_additive ? Capabilities{Capability::second_order, Capability::force_splitting}
+                                       : Capabilities{},
                   .formula = is_additive
                                  ? "y_i = y + h sum_{j<=i} a_ij f_stiff(y_j) + h sum_{j<i} e_ij f_soft(y_j)"
                              : tables.implicit_part ? "y_i = y + h sum_{j<=i} a_ij f(t + c_j h, y_j)"

@@ -161,8 +161,7 @@ std::unique_ptr<Integrator> make_arkode_mri(const MriOptions& options) {
       .order_with_velocity_forces = coupling->q,
       .stages = coupling->stages - 1,
       .is_explicit = !options.inner_is_implicit,
-      .needs_second_order = true,
-      .needs_force_splitting = true,
+      .needs = {Capability::second_order, Capability::force_splitting},
       .formula = "v' = f_stiff(t, v) + sum_j w_ij((t - t_n)/h) f_soft(y_j) between the stages",
       .reference = "[Sandu 2019; Reynolds et al. 2023]"};
   return std::make_unique<OracleIntegrator>(

@@ -115,7 +115,7 @@ MethodInfo constrained_info() {
           .is_multistep = true,
           .is_adaptive = true,
           .has_fixed_step = false,
-          .needs_second_order = true,
+          .needs = {Capability::second_order},
           .formula = "M q' = M v + G^T mu, M v' = f + G^T lambda, g(q) = 0, G v = 0",
           .reference = "[Gear, Gupta, Leimkuhler 1985; Hindmarsh et al. 2005]"};
 }

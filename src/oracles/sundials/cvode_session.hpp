@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "ode/pattern_watch.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/block_preconditioner.hpp"
 #include "oracles/sundials/callback_guard.hpp"
@@ -66,6 +67,7 @@ class CvodeSession {
   double stop_time_;
   int steps_without_progress_ = 0;
   SparseMatrix jacobian_;
+  std::optional<PatternWatch> watch_;  ///< of the Jacobian
   std::optional<BlockPreconditioner> preconditioner_;
 
   ContextPointer context_;

@@ -29,8 +29,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
   require(IDASetUserData(memory, this), "IDASetUserData");
   require(IDASStolerances(memory, tolerances.relative_tolerance, tolerances.absolute_tolerance),
           "IDASStolerances");
-  require(IDASetLinearSolver(memory, linear_solver_.solver.get(), linear_solver_.matrix.get()),
-          "IDASetLinearSolver");
+  require(IDASetLinearSolver(memory, linear_solver_.solver(), linear_solver_.matrix()), "IDASetLinearSolver");
   require(IDASetJacFn(memory, jacobian_function), "IDASetJacFn");
   require(IDASetMaxNumSteps(memory, -1), "IDASetMaxNumSteps");
   require(IDASetStopTime(memory, t1), "IDASetStopTime");
@@ -131,7 +130,7 @@ int IdaMemory::jacobian_function(sunrealtype t, sunrealtype cj, N_Vector y, N_Ve
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.form_->jacobian(t, cj, view(y, run.form_->size()));
     ++run.work_.jacobian_evaluations;
-    SparseDirectSolver::copy(jacobian, J);
+    run.linear_solver_.copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

@@ -71,8 +71,8 @@ struct IterationCount {
 IterationCount newton(const Ivp& ivp, double step, TangentModel model, bool by_conjugate_gradients) {
   ImplicitEulerEquation equation(ivp, step, model, by_conjugate_gradients);
   const Index n = ivp.system->second_order()->degrees_of_freedom();
-  linalg::Newton iteration(n, by_conjugate_gradients ? linalg::LinearSolverKind::conjugate_gradient
-                                                     : linalg::LinearSolverKind::sparse_lu);
+  linalg::Newton iteration(
+      n, by_conjugate_gradients ? linalg::make_linear_solver({}) : linalg::default_direct_solver());
   Vector increment = Vector::Zero(n);
   Work work;
   const Status status = iteration.solve(equation, increment, 0.0, work);

@@ -83,11 +83,7 @@ class ConvergenceCase {
   double length() const { return ivp().t1 - ivp().t0; }
   bool is_second_order() const { return ivp().system->second_order() != nullptr; }
 
-  int expected_order() const {
-    const SecondOrderSystem* system = ivp().system->second_order();
-    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
-    return has_velocity_forces ? integrator_.info().order_with_velocity_forces : integrator_.info().order;
-  }
+  int expected_order() const { return order_on(integrator_.info(), *ivp().system); }
 
   bool find_reference() {
     reference_ = shared_.reference(context_);

@@ -172,7 +172,7 @@ class LimitMeasurement {
     const MethodInfo& info = method_.integrator->info();
     const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
                              (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
-                              !info.carries_more_than_state && !info.needs_second_order);
+                              !info.carries_more_than_state && !info.needs.has(Capability::second_order));
     const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
     const double bound =
         is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;

@@ -92,11 +92,7 @@ class Ladder {
   double length() const { return ivp().t1 - ivp().t0; }
   const MethodInfo& info() const { return spec_.integrator->info(); }
 
-  std::int64_t expected_order() const {
-    const SecondOrderSystem* system = ivp().system->second_order();
-    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
-    return has_velocity_forces ? info().order_with_velocity_forces : info().order;
-  }
+  std::int64_t expected_order() const { return order_on(info(), *ivp().system); }
 
   /// A run without its timing; empty if it failed numerically.
   std::optional<Rung> try_run(const StepControl& control, double number) {
