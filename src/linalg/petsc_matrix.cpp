@@ -1,6 +1,7 @@
 #include "linalg/petsc_matrix.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace fw::linalg {
 
@@ -64,11 +65,18 @@ PetscMatrix::PetscMatrix(const SparseMatrix& A, PetscMatrixType type)
   petsc_check(MatSetType(matrix_, type == PetscMatrixType::aij    ? MATSEQAIJ
                                   : type == PetscMatrixType::baij ? MATSEQBAIJ
                                                                   : MATSEQSBAIJ));
-  set_pattern(A);
+  make_storage(A);
 }
 
 void PetscMatrix::set_pattern(const SparseMatrix& A) {
+  if (type_ != PetscMatrixType::aij) {
+    throw std::logic_error("PETSc's matrices of blocks do not tell of a new pattern: make a new one");
+  }
   const PetscSession session;
+  make_storage(A);
+}
+
+void PetscMatrix::make_storage(const SparseMatrix& A) {
   const bool upper = type_ == PetscMatrixType::sbaij;
   const PetscInt stored_block = type_ == PetscMatrixType::aij ? 1 : block_size_;
   const RowPattern pattern = row_pattern(A, stored_block, upper);

@@ -17,7 +17,8 @@ class PetscMatrix {
 
   /// Takes the pattern of `A`, which has the size of the first one: storage and places are made anew. The
   /// object of PETSc stays the same and its nonzero state rises, so that a preconditioner on it is analysed
-  /// anew.
+  /// anew. For `aij` only, since PETSc 3.18 does not raise the state of matrices of blocks; std::logic_error
+  /// for others, which are made anew.
   void set_pattern(const SparseMatrix& A);
 
   /// Takes the values of `A`, which has the pattern that was set last.
@@ -27,6 +28,8 @@ class PetscMatrix {
   PetscInt block_size() const { return block_size_; }
 
  private:
+  void make_storage(const SparseMatrix& A);
+
   PetscMatrixType type_;
   PetscInt block_size_ = 1;
   PetscMat matrix_;
