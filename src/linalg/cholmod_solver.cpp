@@ -60,6 +60,14 @@ Status CholmodSolver::factorise(const SparseMatrix& A, Work& work) {
   return {};
 }
 
+void CholmodSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  factorise(matrix, not_counted);
+}
+
 LinearSolve CholmodSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
   ++work.linear_solves;
   cholmod_dense right{};

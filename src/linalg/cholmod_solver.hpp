@@ -18,6 +18,9 @@ class CholmodSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  /// Each factorisation is made from its matrix alone.
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   cholmod_sparse view();  ///< of `matrix_`, without a copy

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/error.hpp"
 #include "linalg/true_residual.hpp"
 
 namespace fw::linalg {
@@ -50,6 +51,15 @@ LinearSolve EigenDirectSolver<Factorisation>::solve(ConstVectorRef b, VectorRef 
   return judge_solution(matrix_, b, x, largest_direct_residual, residual_);
 }
 
+template <class Factorisation>
+void EigenDirectSolver<Factorisation>::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  factorise(matrix, not_counted);
+}
+
 template class EigenDirectSolver<Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
 template class EigenDirectSolver<Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
 template class EigenDirectSolver<Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>>;
@@ -83,10 +93,13 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
     const double poor_pivots = 1e-12;
     if (klu_refactor(outer, inner, values, symbolic_, numeric_, &common_) == 1 && common_.status == KLU_OK &&
         klu_rcond(symbolic_, numeric_, &common_) == 1 && common_.rcond > poor_pivots) {
+      keeps_old_pivots_ = true;
       return {};
     }
     klu_free_numeric(&numeric_, &common_);
   }
+  pivot_values_ = ConstVectorMap(values, matrix_.nonZeros());
+  keeps_old_pivots_ = false;
   numeric_ = klu_factor(outer, inner, values, symbolic_, &common_);
   if (numeric_ == nullptr || common_.status != KLU_OK) {
     klu_free_numeric(&numeric_, &common_);
@@ -94,6 +107,34 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
             fmt::format("KLU met a zero pivot in column {}: the matrix is singular", common_.singular_col)};
   }
   return {};
+}
+
+void SparseLuSolver::forget() {
+  klu_free_numeric(&numeric_, &common_);
+}
+
+void SparseLuSolver::serialise(StateArchive& archive) {
+  bool has_factors = numeric_ != nullptr;
+  archive.visit("has factors", has_factors);
+  archive.visit("keeps old pivots", keeps_old_pivots_);
+  archive.visit("matrix", matrix_);
+  if (archive.is_loading()) pivot_values_.resize(has_factors ? matrix_.nonZeros() : 0);
+  if (has_factors) archive.visit("matrix of the pivots", pivot_values_);
+  if (!archive.is_loading()) return;
+  klu_free_numeric(&numeric_, &common_);
+  klu_free_symbolic(&symbolic_, &common_);
+  if (!has_factors) return;
+  // Pivots come from the matrix that they were chosen for, factors from the last one.
+  Work not_counted;
+  const bool keeps_old_pivots = keeps_old_pivots_;
+  const SparseMatrix last = matrix_;
+  SparseMatrix first = matrix_;
+  VectorMap(first.valuePtr(), first.nonZeros()) = pivot_values_;
+  Status status = factorise(first, not_counted);
+  if (status.ok() && keeps_old_pivots) status = factorise(last, not_counted);
+  if (!status.ok() || keeps_old_pivots != keeps_old_pivots_) {
+    throw InputError("saved state: the factors of a matrix cannot be made again from what was saved");
+  }
 }
 
 LinearSolve SparseLuSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

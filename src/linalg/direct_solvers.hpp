@@ -17,6 +17,9 @@ class EigenDirectSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  /// Each factorisation is made from its matrix alone.
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   Factorisation factorisation_;
@@ -47,12 +50,16 @@ class SparseLuSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override;
+  void serialise(StateArchive& archive) override;
 
  private:
   klu_common common_;
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
   SparseMatrix matrix_;
+  Vector pivot_values_;            ///< of the matrix from which the pivots were chosen
+  bool keeps_old_pivots_ = false;  ///< the factors are of a later matrix than the pivots
   Vector residual_;
 };
 

@@ -52,6 +52,15 @@ Status ConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&) {
   return {};
 }
 
+void ConjugateGradientSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  std::uint64_t block_size = static_cast<std::uint64_t>(block_size_);
+  archive.visit("block size", block_size);
+  block_size_ = static_cast<Index>(block_size);
+  if (archive.is_loading()) inverse_blocks_.resize(static_cast<std::size_t>(matrix_.cols()) * block_size);
+  archive.visit("preconditioner", inverse_blocks_);
+}
+
 void ConjugateGradientSolver::precondition(ConstVectorRef r, VectorRef out) const {
   if (block_size_ == 1) {
     out = r.cwiseProduct(ConstVectorMap(inverse_blocks_.data(), r.size()));
@@ -95,6 +104,14 @@ Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&
   solver_.compute(matrix_);
   solver_.preconditioner().keep = false;
   return {};
+}
+
+void EigenConjugateGradientSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  factorise(matrix, not_counted);
 }
 
 LinearSolve EigenConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

@@ -17,6 +17,8 @@ class ConjugateGradientSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   void precondition(ConstVectorRef r, VectorRef out) const;
@@ -48,6 +50,8 @@ class EigenConjugateGradientSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   LinearSolverOptions options_;

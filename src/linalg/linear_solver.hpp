@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/state_archive.hpp"
 #include "core/work.hpp"
 #include "linalg/conjugate_gradient.hpp"
 
@@ -26,6 +27,14 @@ class LinearSolver {
   /// Solves with the last `A`. `x` is the initial guess of an iterative solver. Every solver reports its true
   /// residual, and one that does not reach the tolerance has failed.
   virtual LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) = 0;
+
+  /// Forgets factors and pivots: the next `factorise` works as the first one did, to the last bit.
+  virtual void forget() = 0;
+
+  /// Visits what makes `solve` and the next `factorise` give the same bits: a reading solver makes its
+  /// factors anew from the matrices saved. Throws InputError for solvers of a library that does not give out
+  /// its memory.
+  virtual void serialise(StateArchive& archive) = 0;
 };
 
 enum class LinearSolverKind {

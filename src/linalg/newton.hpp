@@ -28,6 +28,11 @@ class Newton {
   /// Status.
   Status solve(NewtonProblem& problem, VectorRef u, double scale, Work& work);
 
+  /// Forgets the factors: the next solve works as the first one did.
+  void forget_matrix() { solver_->forget(); }
+  /// Visits what the next solve depends on.
+  void serialise(StateArchive& archive) { solver_->serialise(archive); }
+
  private:
   std::unique_ptr<LinearSolver> solver_;
   Vector residual_, correction_, trial_;

@@ -254,6 +254,14 @@ Status PetscSolver::replace_matrix(const SparseMatrix& A, Work& work) {
   }
 }
 
+void PetscSolver::forget() {
+  engine_.reset();
+}
+
+void PetscSolver::serialise(StateArchive&) {
+  throw InputError("the linear solver petsc cannot be saved: PETSc does not give out its memory");
+}
+
 LinearSolve PetscSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {
   ++work.linear_solves;
   LinearSolve result;

@@ -28,6 +28,8 @@ class PetscSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override;
+  void serialise(StateArchive& archive) override;
 
  private:
   class Engine;

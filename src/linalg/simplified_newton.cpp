@@ -87,6 +87,21 @@ Status SimplifiedNewton::solve(NewtonProblem& problem, VectorRef u, double param
   return {};
 }
 
+void SimplifiedNewton::forget_matrix() {
+  has_matrix_ = false;
+  is_slow_ = false;
+  solver_->forget();
+  damped_.forget_matrix();
+}
+
+void SimplifiedNewton::serialise(StateArchive& archive) {
+  archive.visit("parameter of the matrix", parameter_);
+  archive.visit("has a matrix", has_matrix_);
+  archive.visit("converges slowly", is_slow_);
+  solver_->serialise(archive);
+  damped_.serialise(archive);
+}
+
 Status SimplifiedNewton::solve_linear(ConstVectorRef b, VectorRef x, Work& work) {
   return solver_->solve(b, x, work).status;
 }

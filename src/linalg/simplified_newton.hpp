@@ -35,8 +35,10 @@ class SimplifiedNewton {
   Status solve_linear(ConstVectorRef b, VectorRef x, Work& work);
   bool has_matrix() const { return has_matrix_; }
 
-  /// A new matrix at the next solve.
-  void forget_matrix() { has_matrix_ = false; }
+  /// Forgets the factors: the next solve works as the first one did.
+  void forget_matrix();
+  /// Visits what the next solve depends on.
+  void serialise(StateArchive& archive);
 
  private:
   enum class Outcome { converged, diverged, failed };

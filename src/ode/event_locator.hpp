@@ -95,6 +95,6 @@ class EventLocator final : public Observer {
 /// `integrator.solve` with `locator` as observer. Where a terminal event stops the run, time and state of the
 /// solution are those of the event, and its status is stopped_by_observer with the name of the event.
 Solution solve_with_events(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
-                           EventLocator& locator);
+                           EventLocator& locator, const SolveOptions& options = {});
 
 }  // namespace fw

@@ -26,7 +26,8 @@ std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system) 
   return {};
 }
 
-Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
+Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                           const SolveOptions& options) const {
   if (!ivp.system) throw InputError("initial value problem without a system");
   if (ivp.y0.size() != ivp.system->size()) {
     throw InputError(
@@ -40,8 +41,10 @@ Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer&
     throw InputError(fmt::format("method \"{}\": {}", info().name, why));
   }
   const auto start = std::chrono::steady_clock::now();
-  Solution solution = do_solve(ivp, control, observer);
-  solution.work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Solution solution = do_solve(ivp, control, observer, options);
+  const double before = options.resume.empty() ? 0.0 : solution.work.seconds;
+  solution.work.seconds =
+      before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return solution;
 }
 

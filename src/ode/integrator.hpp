@@ -9,6 +9,7 @@
 #include "core/work.hpp"
 #include "ode/ivp.hpp"
 #include "ode/observer.hpp"
+#include "ode/solve_options.hpp"
 #include "ode/step_control.hpp"
 
 namespace fw {
@@ -72,11 +73,14 @@ class Integrator {
   /// Solves `ivp` and shows every accepted step to `observer`. A numerical failure is a Status of the
   /// returned Solution, whose time and state are the last good ones. Throws InputError where the scheme
   /// cannot do what is asked (wrong kind of step control, structure missing, a multistep scheme with a broken
-  /// interval).
-  Solution solve(const Ivp& ivp, const StepControl& control, Observer& observer) const;
+  /// interval, a foreign scheme that is to be saved). A run that was asked to stop has the status
+  /// interrupted.
+  Solution solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                 const SolveOptions& options = {}) const;
 
  private:
-  virtual Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const = 0;
+  virtual Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                            const SolveOptions& options) const = 0;
 };
 
 }  // namespace fw

@@ -236,6 +236,11 @@ class HandWrittenPair final : public integrators::AdaptiveStepper {
     return {};
   }
   void accept() override { k_.front() = k_.back(); }
+  void restart(double, ConstVectorRef) override { has_first_slope_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("slopes", k_);
+    archive.visit("first slope is known", has_first_slope_);
+  }
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override { throw std::logic_error("no dense output of its own"); }
 

@@ -72,6 +72,9 @@ class AverageVectorFieldStepper final : public Stepper, private linalg::NewtonPr
     return {};
   }
 
+  void restart(double, ConstVectorRef) override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
+
  private:
   /// The state at c on the segment from the start to the end with velocity v.
   void move_to(double c, ConstVectorRef v) {

@@ -48,6 +48,9 @@ class DiscreteGradientStepper final : public Stepper, private linalg::NewtonProb
     return {};
   }
 
+  void restart(double, ConstVectorRef) override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
+
  private:
   bool is_free(int i) const { return system_.fixed()[3 * static_cast<std::size_t>(i)] == 0; }
 

@@ -55,6 +55,15 @@ class ProjectiveDynamicsStepper final : public Stepper {
     return {};
   }
 
+  void restart(double, ConstVectorRef) override {
+    factorised_step_ = 0.0;
+    solver_->forget();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("step of the matrix", factorised_step_);
+    solver_->serialise(archive);
+  }
+
  private:
   /// M + h²L over the moving particles, one row each: x, y and z have the same matrix.
   Status factorise(double h) {

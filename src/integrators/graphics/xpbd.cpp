@@ -39,6 +39,10 @@ class XpbdStepper final : public Stepper {
     return {};
   }
 
+  /// A step depends on y only: multipliers start from zero in each substep.
+  void restart(double, ConstVectorRef) override {}
+  void serialise(StateArchive&) override {}
+
  private:
   void make_substep(double tau, VectorRef y) {
     const Index n = force_.size();

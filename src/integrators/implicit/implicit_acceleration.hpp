@@ -32,6 +32,10 @@ class ImplicitAcceleration final : private linalg::NewtonProblem {
   /// `a` holds the initial guess and receives the solution. Fails with Newton's Status.
   Status solve(const Coefficients& coefficients, VectorRef a);
 
+  /// Forgets the factors of Newton's iteration.
+  void forget_matrix() { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) { newton_.serialise(archive); }
+
   const Vector& position() const { return position_; }  ///< q̂ + β₂ a at the solution
   const Vector& velocity() const { return velocity_; }  ///< v̂ + β₁ a at the solution
   const Vector& force() const { return force_; }        ///< f there

@@ -24,6 +24,8 @@ class FirstOrderUpdate final : public ImplicitUpdate, private linalg::NewtonProb
     slope = (y - start_) / c;
     return status;
   }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
 
  private:
   void residual(ConstVectorRef y, VectorRef out) override {
@@ -66,6 +68,8 @@ class SecondOrderUpdate final : public ImplicitUpdate {
     y = w + c * slope;
     return {};
   }
+  void forget_matrix() override { equation_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { equation_.serialise(archive); }
 
  private:
   ImplicitAcceleration equation_;

@@ -28,6 +28,8 @@ class FirstOrderShift final : public ShiftedJacobian {
     right_side_ = r;
     return solver_->solve(right_side_, r, work_).status;
   }
+  void forget_matrix() override { solver_->forget(); }
+  void serialise(StateArchive& archive) override { solver_->serialise(archive); }
 
  private:
   const OdeSystem& system_;
@@ -66,6 +68,8 @@ class SecondOrderShift final : public ShiftedJacobian {
     }
     return status;
   }
+  void forget_matrix() override { solver_->forget(); }
+  void serialise(StateArchive& archive) override { solver_->serialise(archive); }
 
  private:
   const SecondOrderSystem& system_;

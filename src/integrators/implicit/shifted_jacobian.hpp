@@ -19,6 +19,11 @@ class ShiftedJacobian {
 
   /// r ← (I − ηJ)⁻¹ r. Fixed degrees of freedom become exactly zero.
   virtual Status solve(VectorRef r) = 0;
+
+  /// Forgets the factors: the next `factorise` works as the first one did.
+  virtual void forget_matrix() = 0;
+  /// Visits what the next `factorise` depends on.
+  virtual void serialise(StateArchive& archive) = 0;
 };
 
 std::unique_ptr<ShiftedJacobian> make_shifted_jacobian(const OdeSystem& system, Work& work);

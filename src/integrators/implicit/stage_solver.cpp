@@ -48,6 +48,8 @@ class FirstOrderStages final : public StageSolver, private linalg::NewtonProblem
     state_ = e;
     return newton_.solve_linear(state_, e, work_);
   }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
 
  private:
   void residual(ConstVectorRef y, VectorRef out) override {
@@ -119,6 +121,11 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
     e.head(n) += eta * velocity_;
     e.tail(n) = velocity_;
     return status;
+  }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override {
+    matrix_.serialise(archive);
+    newton_.serialise(archive);
   }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/state_archive.hpp"
 #include "ode/second_order_system.hpp"
 
 namespace fw::integrators {
@@ -37,6 +38,9 @@ class StepMatrix {
 
   /// K as it was assembled last.
   const SparseMatrix& stiffness() const { return stiffness_; }
+
+  /// Visits K.
+  void serialise(StateArchive& archive) { archive.visit("stiffness", stiffness_); }
 
  private:
   const SecondOrderSystem& system_;

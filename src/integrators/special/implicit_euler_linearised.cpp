@@ -50,6 +50,15 @@ class LinearisedStepper final : public Stepper {
     return {};
   }
 
+  void restart(double, ConstVectorRef) override {
+    increment_.setZero();
+    solver_->forget();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("increment", increment_);  // where an iterative solver starts
+    solver_->serialise(archive);
+  }
+
  private:
   Status advise(Status status) const {
     if (status.code == StatusCode::matrix_indefinite && options_.tangent != TangentModel::psd_projection) {

@@ -90,10 +90,7 @@ class RespaStepper final : public Stepper {
         stiff_force_(system_.degrees_of_freedom()),
         soft_force_(system_.degrees_of_freedom()),
         held_(system_.degrees_of_freedom()) {
-    const Index n = held_.size();
-    stiff_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), stiff_force_);
-    soft_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), soft_force_);
-    work.rhs_evaluations += 2;
+    restart(ivp.t0, ivp.y0);
   }
 
   Status step(double t, double h, VectorRef y) override {
@@ -117,6 +114,17 @@ class RespaStepper final : public Stepper {
     held_ = v;
     v += (0.5 * h) * inverse_mass_.cwiseProduct(soft_force_);
     return soft_kick_.solve(t + h, 0.5 * h, q, held_, v, soft_force_);
+  }
+
+  void restart(double t, ConstVectorRef y) override {
+    const Index n = held_.size();
+    stiff_.force(t, y.head(n), y.tail(n), stiff_force_);
+    soft_.force(t, y.head(n), y.tail(n), soft_force_);
+    work_.rhs_evaluations += 2;
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("stiff force", stiff_force_);
+    archive.visit("soft force", soft_force_);
   }
 
  private:

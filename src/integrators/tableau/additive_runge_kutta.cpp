@@ -73,6 +73,17 @@ class AdditiveStepper final : public AdaptiveStepper {
     return stages_->filter(h * parts_.stiff.a.back(), error);
   }
 
+  void restart(double, ConstVectorRef) override {
+    for (Vector& slope : stiff_) slope.setZero();
+    for (Vector& slope : soft_) slope.setZero();
+    stages_->forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("stiff slopes", stiff_);
+    archive.visit("soft slopes", soft_);
+    stages_->serialise(archive);
+  }
+
   void accept() override {}
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override {

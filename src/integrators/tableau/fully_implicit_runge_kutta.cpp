@@ -76,6 +76,17 @@ class CoupledStepper : public Stepper, protected linalg::NewtonProblem {
         last_slopes_(slopes_),
         extrapolation_(tableau.values.a.size()) {}
 
+  void restart(double, ConstVectorRef) override {
+    slopes_.setZero();
+    last_step_ = 0.0;
+    newton_.forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("slopes", slopes_);
+    archive.visit("step of the slopes", last_step_);
+    newton_.serialise(archive);
+  }
+
  protected:
   /// Extrapolates the slopes of the last step to the nodes of this one; zero before the first.
   void predict(double h) {

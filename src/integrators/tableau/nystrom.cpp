@@ -92,6 +92,8 @@ class NystromKernel {
     refresh_pointers();
   }
 
+  std::vector<S>& first_acceleration() { return accelerations_.front(); }
+
   const NystromValues<S>& tableau() const { return tableau_; }
 
  private:
@@ -147,6 +149,12 @@ class NystromStepper final : public AdaptiveStepper {
   void accept() override {
     has_first_ = first_same_as_last_;
     if (first_same_as_last_) kernel_.advance_first_stage();
+  }
+
+  void restart(double, ConstVectorRef) override { has_first_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("first acceleration", kernel_.first_acceleration());
+    archive.visit("first acceleration is known", has_first_);
   }
 
   bool has_dense_output() const override { return false; }

@@ -78,6 +78,14 @@ bool ArkStepMemory::raise_stage_tolerance() {
   return true;
 }
 
+void ArkStepMemory::restart(double t, N_Vector y) {
+  collect_work(work_);
+  require(ARKStepReInit(memory_.get(), explicit_part_ ? explicit_function : nullptr,
+                        implicit_part_ ? implicit_function : nullptr, t, y),
+          "ARKStepReInit");
+  if (linear_solver_) linear_solver_->forget();
+}
+
 long ArkStepMemory::last_linear_flag() const {
   long flag = 0;
   if (implicit_part_) ARKStepGetLastLinFlag(memory_.get(), &flag);

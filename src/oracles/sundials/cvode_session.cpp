@@ -172,6 +172,16 @@ void CvodeSession::interpolate(double t, VectorRef out) {
   out = view(dense_.get(), state_.size());
 }
 
+void CvodeSession::restart(double t, ConstVectorRef y) {
+  collect_work(work_);
+  state_ = y;
+  require(CVodeReInit(memory(), t, y_.get()), "CVodeReInit");
+  if (direct_) direct_->forget();
+  require(CVodeSetStopTime(memory(), stop_time_), "CVodeSetStopTime");
+  steps_without_progress_ = 0;
+  message_.clear();
+}
+
 void CvodeSession::collect_work(Work& work) const {
   long error_failures = 0, setups = 0, iterations = 0, iteration_failures = 0;
   CVodeGetNumErrTestFails(memory(), &error_failures);

@@ -43,6 +43,10 @@ class CvodeSession {
   /// y(t) in the last step.
   void interpolate(double t, VectorRef out);
 
+  /// CVodeReInit at (t, y): order 1, a first step of CVODE's choice, no history. What CVODE has counted goes
+  /// to the work of the run before.
+  void restart(double t, ConstVectorRef y);
+
   /// Adds CVODE's own counters.
   void collect_work(Work& work) const;
 
@@ -89,6 +93,7 @@ class CvodeStepper final : public ForeignStepper {
   Status advance(double limit, double& t, VectorRef y) override { return session_.advance(limit, t, y); }
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
+  void restart(double t, ConstVectorRef y) override { session_.restart(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }
 
  private:

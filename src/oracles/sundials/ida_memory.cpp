@@ -8,6 +8,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
                      const Vector& dydt0, const AdaptiveStep& tolerances, Work& work)
     : form_(std::move(form)),
       start_(t0),
+      end_(t1),
       relative_tolerance_(tolerances.relative_tolerance),
       absolute_tolerance_(tolerances.absolute_tolerance),
       work_(work),
@@ -86,6 +87,18 @@ Status IdaMemory::advance(double limit, double& t) {
   report_.guard.rethrow();
   if (flag < 0) return failure(flag, t);
   return check_stall_("IDA", t, report_);
+}
+
+void IdaMemory::restart(double t, ConstVectorRef y, ConstVectorRef dydt) {
+  collect_work(work_);
+  start_ = t;
+  state_ = y;
+  slope_ = dydt;
+  require(IDAReInit(get(), t, state_vector_.get(), slope_vector_.get()), "IDAReInit");
+  linear_solver_.forget();
+  require(IDASetStopTime(get(), end_), "IDASetStopTime");
+  report_ = {};
+  check_stall_ = StallCheck(t);
 }
 
 void IdaMemory::interpolate(double t, VectorRef out) {

@@ -24,6 +24,13 @@ struct SparseDirectSolver {
     std::copy_n(source.valuePtr(), source.nonZeros(), SUNSparseMatrix_Data(target));
   }
 
+  /// KLU orders and pivots anew at the next factorisation.
+  void forget() {
+    require(SUNLinSol_KLUReInit(solver.get(), matrix.get(), SUNSparseMatrix_NNZ(matrix.get()),
+                                SUNKLU_REINIT_PARTIAL),
+            "SUNLinSol_KLUReInit");
+  }
+
   MatrixPointer matrix;
   LinearSolverPointer solver;
 };
