@@ -46,7 +46,7 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   Tally tally;
   std::size_t done = 0;
   study::RunOptions options;
-  options.context = {.interrupted = &interrupted,
+  options.context = {.stop = StopToken(interrupted),
                      .reference_cache = analysis::ReferenceCache::default_directory()};
   options.program = run.program;
   options.force = run.force;

@@ -9,6 +9,17 @@
 
 namespace fw::study {
 
+Solution RunContext::solve(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
+                           Observer& observer) const {
+  Solution solution = integrator.solve(ivp, control, observer, {.stop = stop});
+  if (solution.status.code == StatusCode::interrupted) throw Interrupted{};
+  return solution;
+}
+
+void RunContext::check() const {
+  if (stop.stop_requested()) throw Interrupted{};
+}
+
 Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
                bool quick) {
   std::vector<std::string> names;

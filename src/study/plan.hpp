@@ -1,11 +1,11 @@
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "ode/integrator.hpp"
 #include "study/catalog.hpp"
 #include "study/result.hpp"
 #include "text/checked_table.hpp"
@@ -14,17 +14,20 @@ namespace fw::study {
 
 /// What a case may ask its surroundings while it runs.
 struct RunContext {
-  /// Set by the user's interrupt; a case then stops and is not kept.
-  const std::atomic<bool>* interrupted = nullptr;
+  /// The user's interrupt; a case then stops and is not kept.
+  StopToken stop{};
   /// Directory of certified references that were computed before; empty: none are kept.
-  std::filesystem::path reference_cache;
+  std::filesystem::path reference_cache{};
 
-  bool is_interrupted() const {
-    return interrupted != nullptr && interrupted->load(std::memory_order_relaxed);
-  }
+  /// `integrator.solve` under the token. Throws Interrupted where that stopped the run.
+  Solution solve(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
+                 Observer& observer) const;
+  /// Throws Interrupted if the user has asked to stop: for work that is no run, and after runs that others
+  /// made under the token.
+  void check() const;
 };
 
-/// Thrown inside a case when the user has interrupted it.
+/// Thrown by the context inside a case when the user has interrupted it; the runner drops the case.
 struct Interrupted {};
 
 /// One case of a study: what identifies it and how to run it. `run` is a pure function of the plan (timings

@@ -133,14 +133,14 @@ class Run {
     desks.push_back(
         {std::make_unique<WorkerProcess>([this](std::size_t index, const std::atomic<bool>& interrupted) {
           RunContext context = options_.context;
-          context.interrupted = &interrupted;
+          context.stop = StopToken(interrupted);
           return answer_of(plan_.cases[index], context);
         })});
   }
 
   /// Gives out cases to workers that have none, starting workers as needed, at most `jobs`.
   void give_out(std::deque<std::size_t>& queue, std::vector<Desk>& desks, std::size_t jobs) {
-    while (!queue.empty() && !options_.context.is_interrupted()) {
+    while (!queue.empty() && !options_.context.stop.stop_requested()) {
       auto idle = std::find_if(desks.begin(), desks.end(), [](const Desk& desk) { return !desk.index; });
       if (idle == desks.end()) {
         if (desks.size() >= jobs) return;
@@ -169,7 +169,7 @@ class Run {
       give_out(queue, desks, jobs);
       const bool is_busy =
           std::any_of(desks.begin(), desks.end(), [](const Desk& desk) { return desk.index; });
-      if (!is_busy && (queue.empty() || options_.context.is_interrupted())) return;
+      if (!is_busy && (queue.empty() || options_.context.stop.stop_requested())) return;
       wait_for(desks);
       for (Desk& desk : desks) {
         if (desk.index) {
@@ -178,7 +178,7 @@ class Run {
           desk.worker->receive();  // notices its end
         }
       }
-      if (options_.context.is_interrupted() && !interrupted_at) {
+      if (options_.context.stop.stop_requested() && !interrupted_at) {
         interrupted_at = Clock::now();
         for (const Desk& desk : desks) desk.worker->interrupt();
       }

@@ -106,12 +106,14 @@ TEST(RunPlan, StopsAtAnInterruptAndSaysThatItIsIncomplete) {
   MemoryArchive archive;
   std::atomic<bool> interrupted{false};
   RunOptions options;
-  options.context.interrupted = &interrupted;
+  options.context.stop = StopToken(interrupted);
   options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
   Plan plan = three_cases();
   plan.cases[1].run = [](const RunContext& context) -> CaseResult {
-    while (!context.is_interrupted()) ::usleep(1000);
-    throw Interrupted{};
+    while (true) {
+      ::usleep(1000);
+      context.check();
+    }
   };
   const StudyResult result = run_plan(plan, archive, options);
   EXPECT_FALSE(result.complete);
@@ -124,7 +126,7 @@ TEST(RunPlan, EndsACaseThatDoesNotReactToAnInterrupt) {
   std::atomic<bool> interrupted{false};
   RunOptions options;
   options.patience = 0.1;
-  options.context.interrupted = &interrupted;
+  options.context.stop = StopToken(interrupted);
   options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
   const StudyResult result = run_plan(three_cases([] {
                                         while (true) ::pause();

@@ -31,7 +31,7 @@ struct WatchedProblem {
 class EnergyObserver final : public Observer {
  public:
   EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
-                 std::uint64_t steps, std::uint64_t bins, const RunContext& context);
+                 std::uint64_t steps, std::uint64_t bins);
 
   bool observe(const StepView& view) override;
 
@@ -58,7 +58,6 @@ class EnergyObserver final : public Observer {
   analysis::ModifiedEnergy modified_;
   double step_;
   std::uint64_t steps_, bins_;
-  const RunContext& context_;
   double start_ = 0.0, scale_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
   analysis::BinnedSeries change_;

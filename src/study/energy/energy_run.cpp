@@ -219,10 +219,9 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   Ivp ivp = given;
   ivp.t1 = ivp.t0 + step * static_cast<double>(steps);
   run.seen = std::make_unique<EnergyObserver>(
-      watched, analysis::modified_energy(integrator.info().name, ivp, step, watched.value), step, steps, bins,
-      context);
-  const Solution solution = integrator.solve(ivp, FixedStep{.step = step}, *run.seen);
-  if (context.is_interrupted()) throw Interrupted{};
+      watched, analysis::modified_energy(integrator.info().name, ivp, step, watched.value), step, steps,
+      bins);
+  const Solution solution = context.solve(integrator, ivp, FixedStep{.step = step}, *run.seen);
   run.status = solution.status;
   run.end_time = solution.time;
   run.drift = analysis::fit_drift(run.seen->change());

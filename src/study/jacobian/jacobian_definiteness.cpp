@@ -165,7 +165,7 @@ class DefinitenessCase {
     predicted_.push_back(predict(tangent, system, top));
     check_limits();
     for (const double step : settings_.steps) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       const Matrix A = step_matrix(ivp, assembly, step, model_);
       eigenvalue_.push_back(analysis::smallest_eigenvalue(A));
       record(newton(ivp, step, model_, false), newton_, newton_status_);

@@ -116,7 +116,7 @@ class AgreementCase {
   }
 
   void add_method(const Participant& participant) {
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
     const MethodInfo& info = participant.integrator->info();
     if (!why_not_applicable(info, *ivp().system).empty()) {
       ++not_applicable_;
@@ -125,7 +125,7 @@ class AgreementCase {
     analysis::RefinementGoal goal{.error = settings_.error,
                                   .fewest_steps = static_cast<std::uint64_t>(settings_.fewest_steps),
                                   .most_steps = static_cast<std::uint64_t>(settings_.most_steps),
-                                  .is_interrupted = [this] { return context_.is_interrupted(); }};
+                                  .stop = context_.stop};
     Row row;
     row.name = participant.call;
     row.family = info.family;
@@ -136,7 +136,7 @@ class AgreementCase {
       refused_.push_back(fmt::format("{}: {}", row.name, error.what()));
       row.run.error_estimate = std::numeric_limits<double>::infinity();
     }
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
     row.compared = row.run.error_estimate <= settings_.largest_error;
     if (!row.compared && (refused_.empty() || !refused_.back().starts_with(row.name + ": "))) {
       const std::string why = std::isfinite(row.run.error_estimate)

@@ -13,7 +13,6 @@
 #include "study/measure/error_norms.hpp"
 #include "study/problem_spec.hpp"
 #include "study/shared_problem.hpp"
-#include "study/stop_when_interrupted.hpp"
 
 namespace fw::study {
 
@@ -100,10 +99,9 @@ class ConvergenceCase {
   std::optional<Level> run_level(std::int64_t steps) {
     Level level;
     level.step = length() / static_cast<double>(steps);
-    StopWhenInterrupted observer(context_);
-    const Solution solution =
-        integrator_.solve(ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
-    if (context_.is_interrupted()) throw Interrupted{};
+    NullObserver observer;
+    const Solution solution = context_.solve(
+        integrator_, ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
     last_status_ = solution.status;
     if (!solution.status.ok()) return std::nullopt;
     level.error = measure_error(ivp(), solution.state, reference_.states.front(), scale_);

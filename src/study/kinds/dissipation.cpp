@@ -65,17 +65,12 @@ bool is_measurable(const analysis::NumericalOscillation& theory, std::int64_t tr
 
 class Motion final : public Observer {
  public:
-  explicit Motion(const RunContext& context) : context_(context) {}
-
   bool observe(const StepView& view) override {
     times.push_back(view.time);
     positions.push_back(view.state[0]);
-    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12 && !context_.is_interrupted();
+    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12;
   }
   std::vector<double> times, positions;
-
- private:
-  const RunContext& context_;
 };
 
 class DissipationCase {
@@ -88,8 +83,7 @@ class DissipationCase {
         factors_(theory),
         spring_(spring),
         settings_(settings),
-        context_(context),
-        motion_(context) {}
+        context_(context) {}
 
   CaseResult run() {
     predict();
@@ -107,7 +101,7 @@ class DissipationCase {
   analysis::OscillationRun oscillation_run() const {
     return {.periods = settings_.periods,
             .transient_steps = static_cast<int>(settings_.transient_steps),
-            .is_interrupted = [this] { return context_.is_interrupted(); }};
+            .stop = context_.stop};
   }
 
   void predict() {
@@ -124,7 +118,7 @@ class DissipationCase {
     for (const double z : z_) {
       analysis::MeasuredOscillation found = analysis::measure_oscillation(
           integrator_, settings_.mass, settings_.stiffness, z, oscillation_run());
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       if (!found.status.ok() && status_.ok()) status_ = found.status;
       if (!(found.residual <= largest_residual)) found.points = 0;
       measured_.push_back(found);
@@ -140,7 +134,7 @@ class DissipationCase {
           integrator_, settings_.mass, settings_.stiffness, settings_.infinity, oscillation_run());
     }
     follow_motion();
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
   }
 
   static double unwrapped(double angle, double expected) {
@@ -155,9 +149,9 @@ class DissipationCase {
     const double h = settings_.shown() / omega;
     Ivp ivp = spring_.ivp;
     ivp.t1 = ivp.t0 + std::round(settings_.shown_periods * settings_.shown_steps_per_period) * h;
-    integrator_.solve(ivp, FixedStep{.step = h}, motion_);
+    context_.solve(integrator_, ivp, FixedStep{.step = h}, motion_);
     for (const double t : motion_.times) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       exact_positions_.push_back(static_cast<double>(spring_.exact(Float128(t)).front()));
     }
   }

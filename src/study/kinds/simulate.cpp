@@ -29,18 +29,6 @@ class FrameColumns final : public record::FrameSink {
   std::vector<double> times_, states_;
 };
 
-/// A frame selector that stops when the user interrupts.
-class InterruptibleFrames final : public Observer {
- public:
-  InterruptibleFrames(record::FrameSelector& frames, const RunContext& context)
-      : frames_(frames), context_(context) {}
-  bool observe(const StepView& view) override { return frames_.observe(view) && !context_.is_interrupted(); }
-
- private:
-  record::FrameSelector& frames_;
-  const RunContext& context_;
-};
-
 constexpr std::int64_t exact_frames = 401;
 
 void add_exact(const StudyProblem& entry, CaseResult& result) {
@@ -77,9 +65,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
   record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
-  InterruptibleFrames observer(selector, context);
-  const Solution solution = integrator.solve(ivp, control, observer);
-  if (context.is_interrupted()) throw Interrupted{};
+  const Solution solution = context.solve(integrator, ivp, control, selector);
 
   CaseResult result;
   result.verdict = solution.status.ok() ? Verdict::holds : Verdict::fails;

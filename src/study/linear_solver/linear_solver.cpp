@@ -172,7 +172,7 @@ class SolverCase {
       runs_.emplace_back(options_, Start::kept, n);
     }
     for (std::int64_t k = 0; k < settings_.sequence; ++k) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       for (SequenceRun& run : runs_) {
         Status status = run.solve(systems_);
         if (status.ok()) status = check(run.residuals.back());
@@ -206,7 +206,7 @@ class SolverCase {
     const Vector b = systems_.right_hand_side();
     Vector x(n);
     for (std::int64_t k = 0; k < settings_.repetitions; ++k) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       auto begin = std::chrono::steady_clock::now();
       systems_.assemble();
       assembly_.push_back(seconds_since(begin));

@@ -52,8 +52,8 @@ constexpr double wave_level = 1.0 / 3.0;
 /// Records displacements and fronts of every step.
 class FrontObserver final : public Observer {
  public:
-  FrontObserver(const DisturbedNetwork& network, double threshold, double plateau, const RunContext& context)
-      : network_(network), threshold_(threshold), plateau_(plateau), context_(context) {}
+  FrontObserver(const DisturbedNetwork& network, double threshold, double plateau)
+      : network_(network), threshold_(threshold), plateau_(plateau) {}
 
   bool observe(const StepView& view) override {
     const Index n = network_.rest.size(), c = network_.coordinates;
@@ -77,7 +77,7 @@ class FrontObserver final : public Observer {
     fronts.push_back(front);
     visible.push_back(seen);
     waves.push_back(wave_front(displacement));
-    return !context_.is_interrupted();
+    return true;
   }
 
   std::vector<double> times, displacements, waves;
@@ -99,7 +99,6 @@ class FrontObserver final : public Observer {
 
   const DisturbedNetwork& network_;
   double threshold_, plateau_;
-  const RunContext& context_;
   double largest_ = 0.0;
 };
 
@@ -116,7 +115,7 @@ class PropagationCase {
         context_(context),
         // Of a kick in an endless chain every mass ends up displaced by v/(2ω).
         seen_(network, settings.threshold,
-              network.is_kicked ? 0.5 * settings.size / network.wave_speed : none, context) {
+              network.is_kicked ? 0.5 * settings.size / network.wave_speed : none) {
     const analysis::InfluenceFront start =
         network.is_kicked ? analysis::InfluenceFront{-1, 0} : analysis::InfluenceFront{0, -1};
     predicted_ = analysis::predict_fronts(data, start, network.farthest,
@@ -127,8 +126,7 @@ class PropagationCase {
   CaseResult run() {
     Ivp ivp = network_.ivp;
     ivp.t1 = ivp.t0 + step_ * static_cast<double>(settings_.steps_of(step_));
-    solution_ = integrator_.solve(ivp, FixedStep{.step = step_}, seen_);
-    if (context_.is_interrupted()) throw Interrupted{};
+    solution_ = context_.solve(integrator_, ivp, FixedStep{.step = step_}, seen_);
     fit_speed();
     CaseResult result;
     judge(result);

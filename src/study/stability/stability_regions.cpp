@@ -22,10 +22,6 @@ double at(double from, double to, std::int64_t k, std::int64_t count) {
   return from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
 }
 
-void stop_if_interrupted(const RunContext& context) {
-  if (context.is_interrupted()) throw Interrupted{};
-}
-
 /// The length of the interval of stability along an axis, from growth alone.
 double interval(const std::function<double(double)>& growth) {
   constexpr double rounding = 1e-9;
@@ -44,7 +40,7 @@ void add_grid(const SchemeGrowth& growth, const RegionSettings& settings, const 
     imaginary.push_back(at(settings.imaginary_from, settings.imaginary_to, k, n));
   }
   for (const double y : imaginary) {
-    stop_if_interrupted(context);
+    context.check();
     for (const double x : real) {
       const double factor = growth.of_eigenvalue({x, y});
       size.push_back(factor);
@@ -149,7 +145,7 @@ CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& 
   row.method = method.call;
   row.basis = to_string(growth.basis());
   fill_numbers(method, growth, row);
-  stop_if_interrupted(context);
+  context.check();
   judge(method, result);
   add_grid(growth, settings, context, result);
   add_axes(growth, settings, result);
