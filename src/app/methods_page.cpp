@@ -71,7 +71,7 @@ std::string properties_cell(const MethodInfo& info, const schemes::DerivedProper
 
 std::string row(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info();
-  const schemes::DerivedProperties derived = schemes::derive(entry.data);
+  const schemes::DerivedProperties derived = schemes::derive(entry.theory({}).coefficients);
   return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, cell(info.title),
                      order_cell(info), info.stages, stability_cell(info, derived),
                      properties_cell(info, derived), cell(info.reference));

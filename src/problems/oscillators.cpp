@@ -85,6 +85,7 @@ Problem harmonic_oscillator(const ProblemParameters& given) {
   const Parameter mass = parameters.positive("mass"), stiffness = parameters.positive("stiffness");
   Problem problem = linear_oscillator(mass, stiffness, Parameter(0.0));
   problem.name = "harmonic_oscillator";
+  problem.test_equation = TestEquation::single_oscillation;
   problem.title = "Harmonic oscillator";
   problem.description =
       "m q'' = -k q, q(0) = 1, q'(0) = 1/2 on [0, 7.3]; q(t) = cos wt + sin(wt)/(2w), w = sqrt(k/m). "

@@ -7,18 +7,6 @@
 
 namespace fw::study {
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::holds:
-      return "holds";
-    case Verdict::fails:
-      return "fails";
-    case Verdict::not_applicable:
-      return "not applicable";
-  }
-  return "not applicable";
-}
-
 namespace {
 
 /// The member of that name, in a constant or a mutable list.

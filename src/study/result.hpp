@@ -7,16 +7,12 @@
 #include <variant>
 #include <vector>
 
+#include "core/verdict.hpp"
 #include "record/column.hpp"
 
 namespace fw::study {
 
-/// The outcome of a case against what theory predicts.
-enum class Verdict { holds, fails, not_applicable };
-
-/// "holds", "fails", "not applicable".
-std::string_view to_string(Verdict verdict);
-
+using fw::Verdict;
 using record::Column;
 using record::ColumnValues;
 

@@ -25,11 +25,11 @@ TEST_P(Scheme, IsWhatItSaysItIs) {
   static const std::unique_ptr<Integrator> oracle = make_method("sundials:cvode_bdf");
   const std::unique_ptr<Integrator> integrator = make_method(GetParam());
   const std::vector<analysis::PropertyCheck> checks =
-      analysis::verify({*integrator, find_method(GetParam()).data, oracle.get()});
+      analysis::verify({*integrator, theory_of_call(GetParam()).coefficients, oracle.get()});
   int decided = 0;
   for (const analysis::PropertyCheck& check : checks) {
-    if (check.finding != analysis::Finding::not_applicable) ++decided;
-    if (check.finding != analysis::Finding::fails) continue;
+    if (check.verdict != Verdict::not_applicable) ++decided;
+    if (check.verdict != Verdict::fails) continue;
     ADD_FAILURE() << fmt::format("{}: claimed {}, derived {}, measured {}; {}", check.property, check.claimed,
                                  check.derived, check.measured, check.reason);
   }

@@ -33,6 +33,7 @@ import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
 import plot_vector_field  # noqa: E402
+import plot_verify  # noqa: E402
 import plot_work_precision  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
@@ -148,7 +149,8 @@ def fail(path, names=None):
 
 class CasesThatCouldNotBeComputed(PlotTest):
     KINDS = ["agreement", "construction", "convergence", "dissipation", "energy", "jacobian", "linear_solver", "oscillation",
-             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "work_precision"]
+             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "verify",
+             "work_precision"]
 
     def make(self, kind):
         path = self.folder / f"{kind}.h5"
@@ -369,6 +371,33 @@ class Stability(PlotTest):
         thresholds, laws = self.draw(plot_stability, self.path)[4:]
         self.assertEqual(texts_of_legend(thresholds.axes[0])[::2], ["theory h = 1/k", "theory h = 2/k"])
         self.assertIn("slope -1", [text.get_text() for text in laws.axes[0].texts])
+
+
+class Verification(PlotTest):
+    def make(self):
+        path = self.folder / "verify.h5"
+        synthetic_results.verify(path)
+        return path
+
+    def test_is_chosen_by_its_kind(self):
+        answer = self.script("plot_results.py", self.make())
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(len(answer.stdout.splitlines()), 1)
+
+    def test_has_a_square_per_scheme_and_property_and_marks_what_fails(self):
+        figure, = self.draw(plot_verify, self.make())
+        panel = figure.axes[0]
+        self.assertEqual([tick.get_text() for tick in panel.get_xticklabels()],
+                         ["order, y' = f(t, y)", "shorter last step", "symplectic"])
+        self.assertEqual([tick.get_text() for tick in panel.get_yticklabels()], ["rk4", "broken", "velocity_verlet"])
+        image = panel.images[0].get_array()
+        numpy.testing.assert_array_equal(numpy.ma.getmaskarray(image) | numpy.isnan(numpy.ma.getdata(image)),
+                                         [[False, True, False], [False, True, True], [True, False, False]])
+        dots, crosses = panel.lines
+        numpy.testing.assert_array_equal(crosses.get_xdata(), [0])
+        numpy.testing.assert_array_equal(crosses.get_ydata(), [1])
+        self.assertEqual(dots.get_xdata().size, 4)
+        self.assertEqual(panel.get_legend().get_texts()[1].get_text(), "fails (1)")
 
 
 class LaterKinds(PlotTest):

@@ -26,16 +26,8 @@ class WrongProblems final : public Catalog {
  public:
   explicit WrongProblems(Alteration alteration) : alteration_(std::move(alteration)) {}
   std::unique_ptr<Integrator> method(const std::string& call) const override { return builtin_.method(call); }
-  schemes::SchemeData scheme_data(const std::string& call) const override {
-    return builtin_.scheme_data(call);
-  }
+  analysis::Theory theory(const std::string& call) const override { return builtin_.theory(call); }
   std::vector<std::string> method_names() const override { return builtin_.method_names(); }
-  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
-    return builtin_.equivalent_scheme(call);
-  }
-  analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
-    return builtin_.oscillator_theory(call);
-  }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     Problem problem = builtin_.problem(name, parameters);
     problem.ivp.system = std::make_shared<AlteredSystem>(problem.ivp.system, alteration_);
@@ -146,16 +138,8 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
     std::unique_ptr<Integrator> method(const std::string& call) const override {
       return builtin_.method(call);
     }
-    schemes::SchemeData scheme_data(const std::string& call) const override {
-      return builtin_.scheme_data(call);
-    }
+    analysis::Theory theory(const std::string& call) const override { return builtin_.theory(call); }
     std::vector<std::string> method_names() const override { return builtin_.method_names(); }
-    schemes::SchemeData equivalent_scheme(const std::string& call) const override {
-      return builtin_.equivalent_scheme(call);
-    }
-    analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
-      return builtin_.oscillator_theory(call);
-    }
     Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
       Problem problem = builtin_.problem(name, parameters);
       // The pattern of another network: the force of the cloth, the pattern of a chain.

@@ -11,8 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "schemes/linear_form.hpp"
 #include "schemes/multistep_properties.hpp"
-#include "schemes/stability_function.hpp"
+
+// A false alarm of GCC 12 inside of std::string [GCC bug 105651].
+#pragma GCC diagnostic ignored "-Warray-bounds"
 
 namespace fw::analysis {
 
@@ -144,17 +147,15 @@ std::string StiffOrder::formula() const {
 }
 
 StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lambda) {
-  if (const auto* formula = std::get_if<schemes::MultistepFormula>(&data)) return stiff_order(*formula);
+  const schemes::LinearForm form = schemes::linear_form(data);
+  if (const auto* formula = std::get_if<schemes::MultistepFormula>(&form)) return stiff_order(*formula);
   StiffOrder result;
   const std::optional<StageData> stages = stage_data(data);
   if (!stages) {
     result.reason = "no coefficients of a Runge-Kutta, Rosenbrock or multistep scheme";
     return result;
   }
-  const schemes::StabilityFunction R =
-      std::holds_alternative<schemes::ButcherTableau>(data)
-          ? schemes::stability_function(std::get<schemes::ButcherTableau>(data))
-          : schemes::stability_function(std::get<schemes::RosenbrockTableau>(data));
+  const auto& R = std::get<schemes::StabilityFunction>(form);
   if (R.numerator.size() > R.denominator.size()) {
     result.reason = "the scheme is explicit: |R| grows without bound";
     return result;

@@ -166,14 +166,14 @@ void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<Prop
   while (exact <= largest_degree && error(exact) <= rounding) ++exact;
   check.measured = std::to_string(exact);
   check.claimed = fmt::format(">= {}", info.order);
-  check.finding = solution.status.ok() && exact >= info.order ? Finding::holds : Finding::fails;
+  check.verdict = solution.status.ok() && exact >= info.order ? Verdict::holds : Verdict::fails;
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (derived.quadrature_order) {
     check.derived = std::to_string(*derived.quadrature_order);
-    if (*derived.quadrature_order != exact) check.finding = Finding::fails;
+    if (*derived.quadrature_order != exact) check.verdict = Verdict::fails;
   }
-  if (exact <= largest_degree && error(exact) < missed) check.finding = Finding::fails;
-  if (check.finding == Finding::fails) {
+  if (exact <= largest_degree && error(exact) < missed) check.verdict = Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = fmt::format("polynomials of degree < {} are integrated exactly in one step{}", exact,
                                solution.status.ok() ? "" : "; " + solution.status.describe());
   }
@@ -204,7 +204,7 @@ void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<Property
   const std::int64_t more = count(48) - count(16);
   check.claimed = std::to_string(info.stages);
   check.measured = fmt::format("{:g}", static_cast<double>(more) / 32.0);
-  check.finding = more == 32 * info.stages ? Finding::holds : Finding::fails;
+  check.verdict = more == 32 * info.stages ? Verdict::holds : Verdict::fails;
   checks.push_back(check);
 }
 
@@ -231,8 +231,8 @@ void verify_tableau(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
   const double allowed = (is_explicit ? 1e-14 : 1e-10) * largest;
   check.claimed = "as listed";
   check.measured = fmt::format("differs by {:.1e}", difference);
-  check.finding = difference <= allowed ? Finding::holds : Finding::fails;
-  if (check.finding == Finding::fails) check.reason = "the code does not do what the tableau says";
+  check.verdict = difference <= allowed ? Verdict::holds : Verdict::fails;
+  if (check.verdict == Verdict::fails) check.reason = "the code does not do what the tableau says";
   checks.push_back(check);
 }
 

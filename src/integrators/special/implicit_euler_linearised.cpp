@@ -84,6 +84,7 @@ std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptio
       .is_a_stable = true,
       .is_l_stable = true,
       .needs_second_order = true,
+      .needs_springs = options.tangent != TangentModel::exact,  // the other models are of spring elements
       .iteration_tolerance = linalg::find_linear_solver(options.linear_solver.kind).is_iterative
                                  ? options.linear_solver.relative_tolerance
                                  : 0.0,

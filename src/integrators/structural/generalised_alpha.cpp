@@ -6,8 +6,8 @@
 
 namespace fw::integrators {
 
-AlphaParameters chung_hulbert_parameters(double rho_infinity) {
-  const double rho = rho_infinity;
+AlphaParameters alpha_parameters(const GeneralisedAlphaOptions& options) {
+  const double rho = options.rho_infinity;
   if (!(rho >= 0.0 && rho <= 1.0)) {
     throw InputError(fmt::format("option rho_infinity: found {}, expected a number in [0, 1]", rho));
   }
@@ -21,7 +21,7 @@ AlphaParameters chung_hulbert_parameters(double rho_infinity) {
 }
 
 std::unique_ptr<Integrator> make_generalised_alpha(const GeneralisedAlphaOptions& options) {
-  const AlphaParameters parameters = chung_hulbert_parameters(options.rho_infinity);
+  const AlphaParameters parameters = alpha_parameters(options);
   MethodInfo info{
       .name = "generalised_alpha",
       .title = "Generalised alpha (Chung-Hulbert)",

@@ -56,13 +56,11 @@ class BinTable {
 class EnergyCase {
  public:
   EnergyCase(const WatchedEntry& problem, const std::string& call, const Integrator& integrator,
-             const analysis::AmplificationFactors& theory, bool has_coefficients, const Settings& settings,
-             const RunContext& context)
+             const EnergyTheory& theory, const Settings& settings, const RunContext& context)
       : problem_(problem),
         call_(call),
         integrator_(integrator),
         theory_(theory),
-        has_coefficients_(has_coefficients),
         settings_(settings),
         context_(context) {}
 
@@ -78,7 +76,7 @@ class EnergyCase {
     exponents_ = measure_exponents(runs_);
     const EnergyVerdict judged =
         judge_energy(problem_.watched, integrator_.info(),
-                     has_coefficients_ && integrator_.info().is_symplectic, runs_, exponents_);
+                     theory_.has_coefficients && integrator_.info().is_symplectic, runs_, exponents_);
     CaseResult result;
     result.verdict = judged.verdict;
     result.reason = judged.reason;
@@ -222,8 +220,7 @@ class EnergyCase {
   const WatchedEntry& problem_;
   const std::string& call_;
   const Integrator& integrator_;
-  const analysis::AmplificationFactors& theory_;
-  bool has_coefficients_;
+  const EnergyTheory& theory_;
   const Settings& settings_;
   const RunContext& context_;
   std::vector<EnergyRun> runs_;
@@ -247,6 +244,12 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
       "step_count", std::min<std::int64_t>(settings.step_count, 20'000), 0, 10'000'000'000);
   if (quick) settings.step_count = quick_count;
   return settings;
+}
+
+EnergyTheory energy_theory(const analysis::Theory& theory) {
+  return {.factors = analysis::oscillator_factors(theory),
+          .modified_energy = theory.modified_energy,
+          .has_coefficients = !std::holds_alternative<std::monostate>(theory.on_position_forces)};
 }
 
 void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
@@ -281,12 +284,9 @@ void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, P
       plan.cases.push_back(
           {.id = group_name(problem->entry.label + "-" + call),
            .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" + settings.text(),
-           .run = [problem, call, integrator, theory = catalog.oscillator_theory(call),
-                   has_coefficients =
-                       !std::holds_alternative<std::monostate>(catalog.equivalent_scheme(call)),
+           .run = [problem, call, integrator, theory = energy_theory(catalog.theory(call)),
                    settings](const RunContext& context) {
-             return EnergyCase(*problem, call, *integrator, theory, has_coefficients, settings, context)
-                 .run();
+             return EnergyCase(*problem, call, *integrator, theory, settings, context).run();
            }});
     }
   }

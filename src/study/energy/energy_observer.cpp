@@ -33,11 +33,11 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) {
   quantity = first.name;
   unit = first.unit;
   value = first.value;
-  is_isolated_spring = problem.name == "harmonic_oscillator" || problem.name == "rotation";
+  is_isolated_spring = problem.test_equation == TestEquation::single_oscillation;
   if (is_isolated_spring) frequency = problem.stiffness();
 }
 
-EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
+EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFunction modified, double step,
                                std::uint64_t steps, std::uint64_t bins, const RunContext& context)
     : watched_(watched),
       modified_(std::move(modified)),

@@ -30,7 +30,7 @@ struct WatchedProblem {
 /// Streams one run into bins: memory does not grow with the number of steps.
 class EnergyObserver final : public Observer {
  public:
-  EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
+  EnergyObserver(const WatchedProblem& watched, analysis::EnergyFunction modified, double step,
                  std::uint64_t steps, std::uint64_t bins, const RunContext& context);
 
   bool observe(const StepView& view) override;
@@ -55,7 +55,7 @@ class EnergyObserver final : public Observer {
   void watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change);
 
   const WatchedProblem& watched_;
-  analysis::ModifiedEnergy modified_;
+  analysis::EnergyFunction modified_;
   double step_;
   std::uint64_t steps_, bins_;
   const RunContext& context_;

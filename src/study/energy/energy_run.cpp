@@ -9,6 +9,9 @@
 
 #include "analysis/fit/power_law.hpp"
 
+// A false alarm of GCC 12 inside of std::string [GCC bug 105651].
+#pragma GCC diagnostic ignored "-Warray-bounds"
+
 namespace fw::study {
 
 namespace {
@@ -211,15 +214,15 @@ bool EnergyRun::has_blown_up() const {
 }
 
 EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const Integrator& integrator,
-                        const analysis::AmplificationFactors& theory, double step, std::uint64_t steps,
-                        std::uint64_t bins, const RunContext& context) {
+                        const EnergyTheory& theory, double step, std::uint64_t steps, std::uint64_t bins,
+                        const RunContext& context) {
   EnergyRun run;
   run.step = step;
   run.steps = steps;
   Ivp ivp = given;
   ivp.t1 = ivp.t0 + step * static_cast<double>(steps);
   run.seen = std::make_unique<EnergyObserver>(
-      watched, analysis::modified_energy(integrator.info().name, ivp, step, watched.value), step, steps, bins,
+      watched, analysis::modified_energy(theory.modified_energy, ivp, step, watched.value), step, steps, bins,
       context);
   const Solution solution = integrator.solve(ivp, FixedStep{.step = step}, *run.seen);
   if (context.is_interrupted()) throw Interrupted{};
@@ -232,9 +235,10 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   if (logarithm && logarithm->count() > 10) {
     const double taken = static_cast<double>(logarithm->count());
     run.growth = 0.5 * logarithm->slope();
-    if (theory) {
+    if (theory.factors) {
       const double z = watched.frequency * step;
-      const analysis::NumericalOscillation predicted = analysis::numerical_oscillations(theory, {z}).front();
+      const analysis::NumericalOscillation predicted =
+          analysis::numerical_oscillations(theory.factors, {z}).front();
       if (predicted.oscillates) run.predicted_growth = std::log(std::abs(predicted.factor));
       // ln E swings by `swing` about its trend with the frequency 2z: that leaves a slope of 6·swing/(z n²).
       const analysis::Drift trend = analysis::fit_drift(*logarithm);

@@ -360,7 +360,7 @@ void read_dissipation(const CheckedTable& spec, const Catalog& catalog, bool qui
     plan.cases.push_back(
         {.id = group_name(call),
          .identity = "dissipation\nmethod = " + call + "\n" + settings.text(),
-         .run = [call, integrator, theory = catalog.oscillator_theory(call), spring,
+         .run = [call, integrator, theory = analysis::oscillator_factors(catalog.theory(call)), spring,
                  settings](const RunContext& context) {
            return DissipationCase(call, *integrator, theory, *spring, settings, context).run();
          }});

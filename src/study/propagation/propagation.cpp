@@ -360,7 +360,7 @@ void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool qui
             {.id = group_name(fmt::format("{}-{}-h{}", network->label, call, step)),
              .identity = fmt::format("propagation\n{}method = {}\nstep = {}\n{}", network->identity, call,
                                      step, settings.text()),
-             .run = [network, call, integrator, data = catalog.equivalent_scheme(call), step,
+             .run = [network, call, integrator, data = catalog.theory(call).on_position_forces, step,
                      settings](const RunContext& context) {
                return PropagationCase(*network, call, *integrator, data, step, settings, context).run();
              }});

@@ -133,8 +133,9 @@ void read_stability(const CheckedTable& spec, const Catalog& catalog, bool quick
           fmt::format("{}: \"{}\" chooses its own steps and is left out", spec.source_name(), call));
       continue;
     }
+    const analysis::Theory theory = catalog.theory(call);
     methods.push_back(std::make_shared<const StabilityMethod>(
-        StabilityMethod{call, integrator, catalog.scheme_data(call), catalog.linear_scheme(call)}));
+        StabilityMethod{call, integrator, theory.coefficients, theory.on_linear_systems}));
   }
   const CheckedTable quick_table = spec.table_or_empty("quick");
   if (has_regions) {

@@ -121,8 +121,8 @@ void judge(const StabilityMethod& method, CaseResult& result) {
   analysis::verify_stability_limits(scheme, checks);
   std::vector<std::string> found;
   for (const analysis::PropertyCheck& check : checks) {
-    if (check.finding == analysis::Finding::not_applicable) continue;
-    const bool fails = check.finding == analysis::Finding::fails;
+    if (check.verdict == Verdict::not_applicable) continue;
+    const bool fails = check.verdict == Verdict::fails;
     if (fails) result.verdict = Verdict::fails;
     if (!fails && result.verdict == Verdict::not_applicable) result.verdict = Verdict::holds;
     found.push_back(fmt::format("{}: {}{}{}", check.property, check.measured,

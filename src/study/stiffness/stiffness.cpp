@@ -93,7 +93,8 @@ ReadFamily share(ProblemFamily& read, ReferenceArithmetic arithmetic) {
   family->is_prothero_robinson = true;
   for (StudyProblem& member : read.members) {
     identity += member.identity;
-    family->is_prothero_robinson = family->is_prothero_robinson && member.problem.name == "prothero_robinson";
+    family->is_prothero_robinson =
+        family->is_prothero_robinson && member.problem.test_equation == TestEquation::prothero_robinson;
     family->members.push_back(std::make_shared<const SharedProblem>(std::move(member), arithmetic));
   }
   return {std::move(family), std::move(identity)};
@@ -110,7 +111,7 @@ void read_stiffness(const CheckedTable& spec, const Catalog& catalog, bool quick
   std::vector<std::shared_ptr<const StiffnessMethod>> methods;
   for (const std::string& call : read_method_patterns(spec, catalog)) {
     methods.push_back(std::make_shared<const StiffnessMethod>(
-        StiffnessMethod{call, catalog.method(call), catalog.scheme_data(call)}));
+        StiffnessMethod{call, catalog.method(call), catalog.theory(call).coefficients}));
   }
   for (ProblemFamily& read : read_problem_families(spec, catalog, plan.warnings)) {
     if (quick) thin_out(read, quick_values);
