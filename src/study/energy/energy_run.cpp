@@ -9,9 +9,6 @@
 
 #include "analysis/fit/power_law.hpp"
 
-// A false alarm of GCC 12 inside of std::string [GCC bug 105651].
-#pragma GCC diagnostic ignored "-Warray-bounds"
-
 namespace fw::study {
 
 namespace {
@@ -27,7 +24,7 @@ class Findings {
     if (!holds) failed_ = true;
     texts_.push_back(holds ? std::move(text) : "FAILS: " + text);
   }
-  void note(std::string text) { texts_.push_back(std::move(text)); }
+  void note(const std::string& text) { texts_.push_back(text); }
 
   EnergyVerdict verdict() const {
     return {failed_    ? Verdict::fails
