@@ -23,5 +23,6 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
 void add_run_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_verify_command(CLI::App& app, Action& action);
 void add_show_command(CLI::App& app, Action& action);
+void add_schema_command(CLI::App& app, Action& action);
 
 }  // namespace fw::app

@@ -4,21 +4,14 @@
 
 #include <algorithm>
 
+#include "catalog/declared_options.hpp"
+#include "catalog/integrator_options.hpp"
 #include "catalog/method_options.hpp"
 #include "catalog/oracle_methods.hpp"
 #include "core/error.hpp"
-#include "integrators/energy_momentum/average_vector_field.hpp"
 #include "integrators/energy_momentum/discrete_gradient.hpp"
-#include "integrators/exponential/exponential_rosenbrock_euler.hpp"
-#include "integrators/exponential/gautschi.hpp"
-#include "integrators/graphics/projective_dynamics.hpp"
-#include "integrators/graphics/xpbd.hpp"
 #include "integrators/special/implicit_euler_linearised.hpp"
-#include "integrators/special/r_respa.hpp"
 #include "integrators/special/verlet.hpp"
-#include "integrators/structural/generalised_alpha.hpp"
-#include "integrators/structural/hht_alpha.hpp"
-#include "integrators/structural/newmark.hpp"
 #include "integrators/tableau/additive_runge_kutta.hpp"
 #include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/tableau/explicit_runge_kutta.hpp"
@@ -43,23 +36,9 @@ namespace fw::catalog {
 namespace {
 
 /// Options of a scheme that can choose its own steps.
-const std::vector<OptionInfo> controller_options = {
-    {"controller", "pi", "i, pi or pid (how steps follow from error estimates)"},
-    {"norm", "rms", "rms or max (how the error vector becomes a number)"},
-    {"safety", "0.9", "factor of the predicted step"}};
-
-integrators::ControllerOptions read_controller(const MethodOptions& options) {
-  using integrators::ControllerKind;
-  using integrators::ErrorNorm;
-  integrators::ControllerOptions chosen;
-  chosen.kind = choose<ControllerKind>(options, "controller", chosen.kind,
-                                       {{"i", ControllerKind::integral},
-                                        {"pi", ControllerKind::proportional_integral},
-                                        {"pid", ControllerKind::proportional_integral_derivative}});
-  chosen.norm = choose<ErrorNorm>(options, "norm", chosen.norm,
-                                  {{"rms", ErrorNorm::root_mean_square}, {"max", ErrorNorm::maximum}});
-  chosen.safety = positive_number(options, "safety", chosen.safety);
-  return chosen;
+const std::vector<OptionInfo>& controller_options() {
+  static const std::vector<OptionInfo> list = declared_options<integrators::ControllerOptions>();
+  return list;
 }
 
 bool has_embedded_solution(const schemes::ButcherTableau& tableau) {
@@ -79,8 +58,10 @@ bool has_embedded_solution(const schemes::AdditiveTableau& tableau) {
 /// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
-  return {data.name, has_embedded_solution(data) ? controller_options : std::vector<OptionInfo>{}, data,
-          [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
+  return {data.name, has_embedded_solution(data) ? controller_options() : std::vector<OptionInfo>{}, data,
+          [&data, make](const MethodOptions& options) {
+            return make(data, read_options<integrators::ControllerOptions>(options));
+          }};
 }
 
 linalg::LinearSolverOptions read_linear_solver_options(const MethodOptions& options) {
@@ -138,77 +119,28 @@ MethodEntry runge_kutta_chebyshev(int order) {
           }};
 }
 
+/// A scheme with declared options.
+template <class Options>
+MethodEntry with_options(std::unique_ptr<Integrator> (*make)(const Options&)) {
+  return {make({})->info().name, declared_options<Options>(), {}, [make](const MethodOptions& options) {
+            return make(read_options<Options>(options));
+          }};
+}
+
 /// Structural dynamics, energy–momentum, exponential, graphics and multirate schemes.
 std::vector<MethodEntry> specialised_schemes() {
   using namespace integrators;
   std::vector<MethodEntry> list;
-  list.push_back({make_newmark()->info().name,
-                  {{"beta", "0.25", "0 (central differences) to 0.5; 0.25 is average acceleration"},
-                   {"gamma", "0.5", "0.5 (order 2) to 1 (numerical damping)"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_newmark(
-                        {.beta = number(options, "beta", 0.25), .gamma = number(options, "gamma", 0.5)});
-                  }});
-  list.push_back({make_hht_alpha()->info().name,
-                  {{"alpha", "-0.1", "-1/3 to 0, as in the original paper; 0: no numerical damping"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_hht_alpha({.alpha = number(options, "alpha", -0.1)});
-                  }});
-  list.push_back({make_generalised_alpha()->info().name,
-                  {{"rho_infinity", "0.8", "spectral radius at infinite frequency, 0 to 1"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_generalised_alpha({.rho_infinity = number(options, "rho_infinity", 0.8)});
-                  }});
-  list.push_back({make_average_vector_field()->info().name,
-                  {{"quadrature_points", "4", "Gauss points, 1 to 8"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_average_vector_field(
-                        {.quadrature_points = count(options, "quadrature_points", 4)});
-                  }});
+  list.push_back(with_options<NewmarkOptions>(make_newmark));
+  list.push_back(with_options<HhtAlphaOptions>(make_hht_alpha));
+  list.push_back(with_options<GeneralisedAlphaOptions>(make_generalised_alpha));
+  list.push_back(with_options<AverageVectorFieldOptions>(make_average_vector_field));
   list.push_back(plain(make_discrete_gradient));
-  list.push_back({make_exponential_rosenbrock_euler()->info().name,
-                  {{"krylov_tolerance", "1e-12", "of a phi function, relative to the state"},
-                   {"krylov_dimension", "200", "largest dimension of the Krylov space"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_exponential_rosenbrock_euler(
-                        {.krylov_tolerance = number(options, "krylov_tolerance", 1e-12),
-                         .krylov_dimension = count(options, "krylov_dimension", 200)});
-                  }});
-  list.push_back({make_gautschi()->info().name,
-                  {{"filter", "gautschi", "gautschi, deuflhard or mollified_impulse"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_gautschi(
-                        {.filter = choose<TrigonometricFilter>(
-                             options, "filter", TrigonometricFilter::gautschi,
-                             {{"gautschi", TrigonometricFilter::gautschi},
-                              {"deuflhard", TrigonometricFilter::deuflhard},
-                              {"mollified_impulse", TrigonometricFilter::mollified_impulse}})});
-                  }});
-  list.push_back({make_r_respa()->info().name,
-                  {{"inner_steps", "10", "steps of the stiff forces per step"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_r_respa({.inner_steps = count(options, "inner_steps", 10)});
-                  }});
-  list.push_back({make_projective_dynamics()->info().name,
-                  {{"iterations", "10", "local-global iterations per step"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_projective_dynamics({.iterations = count(options, "iterations", 10)});
-                  }});
-  list.push_back({make_xpbd()->info().name,
-                  {{"substeps", "10", "substeps per step"}, {"iterations", "1", "sweeps per substep"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_xpbd({.substeps = count(options, "substeps", 10),
-                                      .iterations = count(options, "iterations", 1)});
-                  }});
+  list.push_back(with_options<ExponentialOptions>(make_exponential_rosenbrock_euler));
+  list.push_back(with_options<GautschiOptions>(make_gautschi));
+  list.push_back(with_options<RespaOptions>(make_r_respa));
+  list.push_back(with_options<ProjectiveDynamicsOptions>(make_projective_dynamics));
+  list.push_back(with_options<XpbdOptions>(make_xpbd));
   return list;
 }
 
@@ -312,7 +244,7 @@ std::unique_ptr<Integrator> make_method(const MethodCall& call) {
 schemes::SchemeData scheme_of(const std::string& text) {
   const MethodCall call = parse_method_call(text);
   const auto is_of_controller = [](const auto& option) {
-    return std::any_of(controller_options.begin(), controller_options.end(),
+    return std::any_of(controller_options().begin(), controller_options().end(),
                        [&](const OptionInfo& known) { return known.name == option.first; });
   };
   const MethodEntry& entry = find_method(call.name);

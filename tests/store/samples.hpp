@@ -84,9 +84,7 @@ inline study::CaseResult sample_case(int i) {
   result.summary = {{"method", "", "rk" + std::to_string(i)},
                     {"order", "1", i == 1 ? std::nan("") : 4.0 + i},
                     {"rhs_evaluations", "1", std::int64_t{100} + i},
-                    {"seconds", "s", 0.5},
-                    {"verdict", "", std::string(to_string(result.verdict))},
-                    {"reason", "", result.reason}};
+                    {"seconds", "s", 0.5}};
   return result;
 }
 

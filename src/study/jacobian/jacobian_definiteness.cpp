@@ -138,7 +138,7 @@ class DefinitenessCase {
     CaseResult result;
     judge(row, result);
     add_columns(result);
-    add_summary(row, result);
+    result.summary = cells_of(row);
     return result;
   }
 

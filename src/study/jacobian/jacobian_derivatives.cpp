@@ -255,7 +255,7 @@ CaseResult run_derivative(const DerivativeSubject& subject, const std::string& f
   if (formula == "printed_e2") run_printed(samples, Erratum::e2, context, row, result);
   if (formula == "forward") run_difference(samples, Difference::forward, settings, context, row, result);
   if (formula == "central") run_difference(samples, Difference::central, settings, context, row, result);
-  add_summary(row, result);
+  result.summary = cells_of(row);
   return result;
 }
 
@@ -313,7 +313,7 @@ CaseResult run_pattern(const DerivativeSubject& subject, const RunContext&) {
   result.columns = {{"block_row", "1", block_row, {}, {}},
                     {"block_column", "1", block_column, {}, {}},
                     {"largest_entry", "SI", largest_entry, {}, {}}};
-  add_summary(row, result);
+  result.summary = cells_of(row);
   return result;
 }
 

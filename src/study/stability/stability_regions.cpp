@@ -135,11 +135,6 @@ void judge(const StabilityMethod& method, CaseResult& result) {
 
 }  // namespace
 
-std::string RegionSettings::text() const {
-  return fmt::format("real = [{}, {}]\nimaginary = [{}, {}]\npoints = {}\n", real_from, real_to,
-                     imaginary_from, imaginary_to, points);
-}
-
 CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& settings,
                            const RunContext& context) {
   CaseResult result;
@@ -155,7 +150,7 @@ CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& 
   add_axes(growth, settings, result);
   if (const auto* formula = std::get_if<schemes::MultistepFormula>(&method.data))
     add_root_locus(*formula, result);
-  row.add_to(result);
+  result.summary = cells_of(row);
   return result;
 }
 

@@ -220,7 +220,7 @@ class OrderMap {
     row.nonstiff_order = figure(nonstiff_);
     row.stiff_order = figure(stiff_);
     if (prediction_.valid) row.predicted_stiff_order = prediction_.order;
-    add_stiffness_summary(result, row);
+    result.summary = cells_of(row);
     return result;
   }
 
