@@ -51,4 +51,10 @@ Options read_options(const MethodOptions& given, Options options = {}) {
   return options;
 }
 
+/// The same with the defaults of a fresh struct, as a function to hand on.
+template <class Options>
+Options read_declared(const MethodOptions& given) {
+  return read_options<Options>(given, Options{});
+}
+
 }  // namespace fw::catalog

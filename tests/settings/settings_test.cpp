@@ -7,6 +7,7 @@
 #include "settings/json_schema.hpp"
 #include "settings/reader.hpp"
 #include "settings/settings_page.hpp"
+#include "text/toml_assignment.hpp"
 
 namespace fw::settings {
 namespace {
