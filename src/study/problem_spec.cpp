@@ -36,15 +36,13 @@ std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpri
 
 /// The scene as a problem on [0, t_end].
 Problem problem_from_scene(scene::Scene scene, const std::string& name, double t_end) {
-  const bool has_kinks =
-      scene.model.springs.law == mechanics::SpringLaw::tension_only || !scene.model.obstacles.empty();
   Problem problem;
   problem.name = name;
   problem.title = scene.title;
-  problem.is_smooth = !has_kinks;
   problem.ivp.y0 = initial_state(scene);
   problem.ivp.t1 = t_end;
   auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
+  problem.is_smooth = !system->elements().has_kinks();
   if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
   problem.ivp.system = std::move(system);
   return problem;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
-#include "mechanics/mass_spring_force.hpp"
+#include "mechanics/model_elements.hpp"
 
 namespace fw::mechanics {
 namespace {
@@ -34,7 +34,7 @@ std::vector<double>& numbers(Springs& springs, SpringParameter parameter) {
 
 Vector force(const MassSpringModel& model, ConstVectorRef q, ConstVectorRef v) {
   Vector f(q.size());
-  mass_spring_force(model, q.data(), v.data(), f.data());
+  assemble<ElementBatch>(model)->force(q.data(), v.data(), f.data());
   return f;
 }
 

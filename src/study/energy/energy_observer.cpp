@@ -17,10 +17,8 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) {
     quantity = "energy";
     unit = std::string(1, 'J');  // GCC 12 warns wrongly of the assignment of one letter
     value = [s = springs, n](double, ConstVectorRef y) { return s->energies(y.head(n), y.tail(n)).total(); };
-    const mechanics::MassSpringModel& model = springs->model();
     is_damped = springs->force_class() == ForceClass::velocity;
-    is_free = model.fixed.empty() && model.anchors.empty() && model.obstacles.empty() && model.drag == 0.0 &&
-              norm(model.gravity) == 0.0;
+    is_free = springs->model().fixed.empty() && springs->elements().is_internal();
     return;
   }
   if (problem.invariants.empty()) {

@@ -21,10 +21,14 @@ class EnergyWatch final : public Observer {
 
   bool observe(const StepView& view) override {
     const Index n = system_.degrees_of_freedom();
-    const mechanics::Energies energies = system_.energies(view.state.head(n), view.state.tail(n));
+    const Energies energies = system_.energies(view.state.head(n), view.state.tail(n));
     if (view.index == 0) {
       start_ = energies.total();
-      const double stored = energies.kinetic + energies.elastic + energies.obstacle;
+      // Gravity's energy has no zero of its own.
+      double stored = 0.0;
+      for (const NamedValue& energy : energies.list()) {
+        if (energy.name != "gravitational") stored += energy.value;
+      }
       scale_ = stored > 0.0 ? stored : 1.0;
     }
     largest_gain = std::max(largest_gain, (energies.total() - start_) / scale_);

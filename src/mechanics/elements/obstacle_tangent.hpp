@@ -1,7 +1,7 @@
 #pragma once
 
-#include "mechanics/central_force_tangent.hpp"
-#include "mechanics/obstacle_force.hpp"
+#include "mechanics/elements/central_force_tangent.hpp"
+#include "mechanics/elements/obstacle_force.hpp"
 #include "ode/second_order_system.hpp"
 
 namespace fw::mechanics {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "mechanics/central_force_tangent.hpp"
-#include "mechanics/spring_force.hpp"
+#include "mechanics/elements/central_force_tangent.hpp"
+#include "mechanics/elements/spring_force.hpp"
 #include "ode/second_order_system.hpp"
 
 namespace fw::mechanics {

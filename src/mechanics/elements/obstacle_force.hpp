@@ -5,7 +5,7 @@
 
 #include "core/extended_precision.hpp"
 #include "core/vec3.hpp"
-#include "mechanics/mass_spring_model.hpp"
+#include "mechanics/elements/obstacle.hpp"
 
 namespace fw::mechanics {
 

@@ -8,16 +8,9 @@
 #include "core/error.hpp"
 #include "core/extended_precision.hpp"
 #include "core/vec3.hpp"
-#include "mechanics/spring_law.hpp"
+#include "mechanics/elements/springs.hpp"
 
 namespace fw::mechanics {
-
-/// The numbers of one spring; see `Springs` for their units.
-struct SpringParameters {
-  double stiffness = 0.0;    ///< k_s
-  double damping = 0.0;      ///< k_d
-  double rest_length = 0.0;  ///< l₀
-};
 
 /// Calls `function(std::integral_constant<SpringLaw, law>{})`: the law becomes a constant of the loop that
 /// the function contains, so that no loop branches on it per spring.
@@ -83,6 +76,17 @@ Vec3<Scalar> spring_force(const SpringParameters& spring, const Vec3<Scalar>& d,
   const Scalar length = sqrt(length_squared);
   const Vec3<Scalar> r = (Scalar(1) / length) * d;
   return (spring_tension<Law>(spring, length) + spring.damping * dot(w, r)) * r;
+}
+
+/// The damper's part of `spring_force` alone, k_d (w·r) r [N]; zero at L = 0.
+template <class Scalar>
+Vec3<Scalar> spring_damping_force(const SpringParameters& spring, const Vec3<Scalar>& d,
+                                  const Vec3<Scalar>& w) {
+  using std::sqrt;
+  const Scalar length_squared = dot(d, d);
+  if (real_part(length_squared) == 0) return {};
+  const Vec3<Scalar> r = (Scalar(1) / sqrt(length_squared)) * d;
+  return (spring.damping * dot(w, r)) * r;
 }
 
 /// The power that the damper of a spring dissipates, k_d (w·r)² [W]; zero, and counted, at L = 0.

@@ -1,9 +1,16 @@
 #pragma once
 
 #include "core/vec3.hpp"
-#include "mechanics/mass_spring_model.hpp"
 
 namespace fw::mechanics {
+
+/// Ties a point to its rest position: force −k (x − x₀) − c v [Zachmann 2011, S37].
+struct Anchor {
+  int particle = 0;
+  Vec3<double> rest_position;  ///< x₀ [m]
+  double stiffness = 0.0;      ///< k [N/m]
+  double damping = 0.0;        ///< c [N·s/m]
+};
 
 /// x − x₀ [m], from where the anchor holds its particle to where the particle is.
 template <class Scalar>

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "mechanics/central_force_tangent.hpp"
-#include "mechanics/spring_force.hpp"
+#include "mechanics/elements/central_force_tangent.hpp"
+#include "mechanics/elements/spring_force.hpp"
 
 namespace fw::mechanics {
 
