@@ -40,6 +40,8 @@ std::vector<Batch> elements_of(const MassSpringModel& model) {
   return batches;
 }
 
+extern template class AssemblyOf<ElementBatch>;  // compiled once, in model_elements.cpp
+
 /// The sums over the elements of a model and `further` ones, over the types in `Batch`: `ElementBatch`, or a
 /// longer list. The model has to outlive them. Throws InputError for a bad model.
 template <class Batch>
