@@ -62,6 +62,10 @@ void MassSpringSystem::change_elements(MassSpringModel model) {
     --pattern_revision_;
     derived_ = std::make_unique<Derived>();
   }
+  if (before->splitting != nullptr) {
+    before->splitting->split(*elements_, block_pattern());
+    std::call_once(derived_->splitting_once, [&] { derived_->splitting = std::move(before->splitting); });
+  }
 }
 
 const BlockPattern& MassSpringSystem::block_pattern() const {
@@ -158,7 +162,7 @@ void MassSpringSystem::tangent_product(double, ConstVectorRef q, ConstVectorRef 
 const ForceSplitting* MassSpringSystem::force_splitting() const {
   std::call_once(derived_->splitting_once, [this] {
     if (SpringSplitting::is_possible(*elements_)) {
-      derived_->splitting = std::make_unique<const SpringSplitting>(*elements_, block_pattern(), degenerate_);
+      derived_->splitting = std::make_unique<SpringSplitting>(*elements_, block_pattern(), degenerate_);
     }
   });
   return derived_->splitting.get();

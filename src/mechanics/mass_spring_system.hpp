@@ -44,7 +44,8 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
 
   /// Gives the system other elements on the same particles: `model` has as many particles as before, with the
   /// same masses and fixed ones. Not to be called while anything evaluates the system; references to
-  /// elements, pattern and splitting end. Throws InputError for a bad model, and the system stays as it is.
+  /// elements and pattern end, a splitting splits the new elements. Throws InputError for a bad model, and the
+  /// system stays as it is.
   void change_elements(MassSpringModel model);
   /// How often the elements have been changed.
   std::uint64_t element_revision() const { return element_revision_; }
@@ -117,7 +118,7 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   struct Derived {
     std::once_flag pattern_once, splitting_once;
     std::unique_ptr<const BlockPattern> pattern;
-    std::unique_ptr<const SpringSplitting> splitting;
+    std::unique_ptr<SpringSplitting> splitting;
   };
 
   MassSpringModel model_;

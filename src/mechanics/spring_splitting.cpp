@@ -31,11 +31,15 @@ bool SpringSplitting::is_possible(const ElementAssembly& elements) {
 
 SpringSplitting::SpringSplitting(const ElementAssembly& elements, const BlockPattern& pattern,
                                  std::atomic<std::uint64_t>& degenerate)
-    : elements_(elements),
-      pattern_(pattern),
-      stiff_(elements.batch_count()),
-      soft_(elements.batch_count()),
-      degenerate_(degenerate) {
+    : degenerate_(degenerate) {
+  split(elements, pattern);
+}
+
+void SpringSplitting::split(const ElementAssembly& elements, const BlockPattern& pattern) {
+  elements_ = &elements;
+  pattern_ = &pattern;
+  stiff_.assign(elements.batch_count(), {});
+  soft_.assign(elements.batch_count(), {});
   const std::vector<std::vector<bool>> stiff = stiff_elements(elements.rates());
   for (std::size_t b = 0; b < stiff.size(); ++b) {
     if (stiff[b].empty()) {
@@ -49,22 +53,22 @@ SpringSplitting::SpringSplitting(const ElementAssembly& elements, const BlockPat
 }
 
 void SpringSplitting::stiff_force(double, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
-  count_degenerate(elements_.force(stiff_, q.data(), v.data(), f.data()));
+  count_degenerate(elements_->force(stiff_, q.data(), v.data(), f.data()));
 }
 
 void SpringSplitting::soft_force(double, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
-  count_degenerate(elements_.force(soft_, q.data(), v.data(), f.data()));
+  count_degenerate(elements_->force(soft_, q.data(), v.data(), f.data()));
 }
 
 void SpringSplitting::stiff_stiffness(double, ConstVectorRef q, ConstVectorRef v, SparseMatrix& K) const {
-  pattern_.require_tangent(K, "K of the stiff springs");
+  pattern_->require_tangent(K, "K of the stiff springs");
   count_degenerate(
-      elements_.fill_stiffness(&stiff_, pattern_, q.data(), v.data(), TangentModel::exact, K.valuePtr()));
+      elements_->fill_stiffness(&stiff_, *pattern_, q.data(), v.data(), TangentModel::exact, K.valuePtr()));
 }
 
 void SpringSplitting::stiff_damping(double, ConstVectorRef q, ConstVectorRef v, SparseMatrix& D) const {
-  pattern_.require_tangent(D, "D of the stiff springs");
-  count_degenerate(elements_.fill_damping(&stiff_, pattern_, q.data(), v.data(), D.valuePtr()));
+  pattern_->require_tangent(D, "D of the stiff springs");
+  count_degenerate(elements_->fill_damping(&stiff_, *pattern_, q.data(), v.data(), D.valuePtr()));
 }
 
 }  // namespace fw::mechanics

@@ -25,6 +25,9 @@ class SpringSplitting final : public ForceSplitting {
   SpringSplitting(const ElementAssembly& elements, const BlockPattern& pattern,
                   std::atomic<std::uint64_t>& degenerate);
 
+  /// Splits other elements from now on; who holds this splitting keeps it.
+  void split(const ElementAssembly& elements, const BlockPattern& pattern);
+
   void stiff_force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
   void soft_force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
   void stiff_stiffness(double t, ConstVectorRef q, ConstVectorRef v, SparseMatrix& K) const override;
@@ -35,8 +38,8 @@ class SpringSplitting final : public ForceSplitting {
     if (springs > 0) degenerate_.fetch_add(springs, std::memory_order_relaxed);
   }
 
-  const ElementAssembly& elements_;
-  const BlockPattern& pattern_;
+  const ElementAssembly* elements_ = nullptr;
+  const BlockPattern* pattern_ = nullptr;
   ElementChoice stiff_, soft_;
   std::atomic<std::uint64_t>& degenerate_;
 };

@@ -73,6 +73,17 @@ struct Membrane {
         mechanics::with_elements(std::shared_ptr<const std::vector<mechanics::TestBatch>>(further)));
     ivp.system = system;
   }
+
+  /// A triangle comes, the tetrahedron goes, a spring joins two particles that had nothing to do with each
+  /// other.
+  void change() {
+    further->pop_back();
+    std::get<mechanics::TriangleAreaBatch>(further->front()).triangles.push_back({{4, 6, 7}, 0.4, 50.0, 0.1});
+    MassSpringModel model = system->model();
+    mechanics::RandomModels random(5);
+    random.add_spring(model.springs, 0, 5, true);
+    system->change_elements(model);
+  }
 };
 
 TEST(ElementsOfThreeAndFourNodes, RunWithImplicitSchemesOfTheirOrder) {
@@ -116,15 +127,7 @@ TEST(ElementsThatChange, BetweenTwoRunsGiveWhatTwoSystemsGive) {
     Ivp first = changing.ivp;
     first.t1 = 0.2;
     const Vector middle = run(*scheme, first, 0.01).state;
-    // A triangle comes, the tetrahedron goes, a spring joins two particles that had nothing to do with each
-    // other.
-    changing.further->pop_back();
-    std::get<mechanics::TriangleAreaBatch>(changing.further->front())
-        .triangles.push_back({{4, 6, 7}, 0.4, 50.0, 0.1});
-    MassSpringModel model = changing.system->model();
-    mechanics::RandomModels random(5);
-    random.add_spring(model.springs, 0, 5, true);
-    changing.system->change_elements(model);
+    changing.change();
     EXPECT_EQ(changing.system->pattern_revision(), 1u);
     Ivp second = changing.ivp;
     second.t0 = 0.2;
@@ -132,7 +135,8 @@ TEST(ElementsThatChange, BetweenTwoRunsGiveWhatTwoSystemsGive) {
     second.y0_extended.clear();
     Ivp fresh = second;
     fresh.system = std::make_shared<const MassSpringSystem>(
-        model, mechanics::with_elements(std::vector<mechanics::TestBatch>(*changing.further)));
+        changing.system->model(),
+        mechanics::with_elements(std::vector<mechanics::TestBatch>(*changing.further)));
     const Solution after = run(*scheme, second, 0.01);
     ASSERT_TRUE(after.status.ok()) << scheme->info().name << ": " << after.status.describe();
     EXPECT_EQ(after.state, run(*scheme, fresh, 0.01).state) << scheme->info().name;
