@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "paths.hpp"
 #include "scene/scene.hpp"
 #include "scene_comparison.hpp"
 
@@ -213,7 +214,8 @@ TEST(SceneFormat, ReadsEverySceneOfTheProject) {
   const std::set<std::string> at_rest = {"free_spring", "uneven_chain", "damped_chain", "buckling_chain",
                                          "resting_cloth"};
   std::size_t scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(FEDERWERK_SOURCE_DIR "/studies/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(fw::test::source_directory() + "/studies/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path().string());
     ++scenes;
