@@ -139,8 +139,8 @@ def compare_files(before, after):
 
 
 DIGESTED = {  # of a trajectory
-    "trajectory": ("time", "position", "velocity", "kinetic_energy", "potential_energy", "total_energy", "elastic_energy",
-                   "gravitational_energy", "obstacle_energy", "linear_momentum", "angular_momentum"),
+    "trajectory": ("time", "position", "velocity", "kinetic_energy", "potential_energy", "total_energy",
+                   "elastic_energy", "gravitational_energy", "obstacle_energy", "linear_momentum", "angular_momentum"),
     "counters": ("rhs_evaluations", "jacobian_evaluations", "jacobian_products", "factorisations", "linear_solves",
                  "linear_iterations", "newton_iterations", "accepted_steps", "rejected_steps"),
 }

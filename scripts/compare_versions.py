@@ -133,14 +133,17 @@ def compare_study(study, directory, before, after):
         outcome.refused = True
         outcome.additions.append(f"BEFORE cannot run it: {made.stderr.strip()}")
         return outcome
-    if not anew.exists():
+    told = place[1] / f"repetition_of_{before.identity[:16]}.json"
+    if not told.exists():
         answer = after.run("run", file, "-o", place[1])
-        if "are the same bit for bit" not in answer.stdout:
-            lines = [line for line in answer.stdout.splitlines() if line.startswith("  ") and "[" not in line[:4]]
-            outcome.differences.append(f"AFTER does not repeat {file} (exit code {answer.returncode}): "
-                                       + " | ".join([*lines[:5], answer.stderr.strip()]))
-        if repeated.exists():
+        lines = [line for line in answer.stdout.splitlines() if line.startswith("  ") and "[" not in line[:4]]
+        told.parent.mkdir(parents=True, exist_ok=True)
+        told.write_text(json.dumps("" if "are the same bit for bit" in answer.stdout else
+                                   " | ".join([f"exit code {answer.returncode}", *lines[:5], answer.stderr.strip()])))
+        if repeated.exists() and not anew.exists():
             repeated.rename(anew)
+    if json.loads(told.read_text()):
+        outcome.differences.append(f"AFTER does not repeat {file}: {json.loads(told.read_text())}")
     answer = after.run("run", study, "--quick", "-o", place[1])
     if answer.returncode != made.returncode:
         outcome.differences.append(f"exit code {made.returncode} before, {answer.returncode} after "

@@ -50,16 +50,16 @@ Equation arc_tangent() {
   return {[](double u) { return std::atan(u); }, [](double u) { return 1.0 / (1.0 + u * u); }};
 }
 
-struct Run {
+struct Outcome {
   Status status;
   double u = 0.0;
   Work work{};
 };
 
-Run damped(Equation& equation, double start) {
+Outcome damped(Equation& equation, double start) {
   Newton newton(1, LinearSolverKind::sparse_lu);
   Vector u = Vector::Constant(1, start);
-  Run run;
+  Outcome run;
   run.status = newton.solve(equation, u, 1.0, run.work);
   run.u = u[0];
   return run;
@@ -67,7 +67,7 @@ Run damped(Equation& equation, double start) {
 
 TEST(Newton, ConvergesQuadraticallyAndEvaluatesLastAtItsResult) {
   Equation equation = root_of_two();
-  const Run run = damped(equation, 1.0);
+  const Outcome run = damped(equation, 1.0);
   EXPECT_TRUE(run.status.ok()) << run.status.describe();
   EXPECT_NEAR(run.u, std::sqrt(2.0), 4e-16);
   // Errors 0.4, 0.09, 2e-3, 2e-6, 2e-12, then rounding.
@@ -79,7 +79,7 @@ TEST(Newton, ConvergesQuadraticallyAndEvaluatesLastAtItsResult) {
 
 TEST(Newton, TakesNoStepFromARoot) {
   Equation equation = arc_tangent();
-  const Run run = damped(equation, 0.0);
+  const Outcome run = damped(equation, 0.0);
   EXPECT_TRUE(run.status.ok());
   EXPECT_EQ(run.u, 0.0);
   EXPECT_EQ(run.work.newton_iterations, 0u);
@@ -89,14 +89,14 @@ TEST(Newton, TakesNoStepFromARoot) {
 TEST(Newton, HalvesCorrectionsThatWouldLeadAway) {
   ASSERT_GT(std::abs(3.0 - std::atan(3.0) * 10.0), 3.0) << "a full step leads away";
   Equation equation = arc_tangent();
-  const Run run = damped(equation, 3.0);
+  const Outcome run = damped(equation, 3.0);
   EXPECT_TRUE(run.status.ok()) << run.status.describe();
   EXPECT_NEAR(run.u, 0.0, 1e-12);
 }
 
 TEST(Newton, FailsWhereThereIsNoRoot) {
   Equation equation = no_root();
-  const Run run = damped(equation, 0.7);
+  const Outcome run = damped(equation, 0.7);
   EXPECT_EQ(run.status.code, StatusCode::newton_failed);
   EXPECT_EQ(run.status.message.find("Newton's iteration did not converge in 50 iterations (residual "), 0u)
       << run.status.message;
@@ -105,14 +105,14 @@ TEST(Newton, FailsWhereThereIsNoRoot) {
 
 TEST(Newton, FailsWithTheLinearSolversReasonWhereTheDerivativeVanishes) {
   Equation equation = no_root();
-  const Run run = damped(equation, 0.0);
+  const Outcome run = damped(equation, 0.0);
   EXPECT_EQ(run.status.code, StatusCode::matrix_singular) << run.status.describe();
   EXPECT_EQ(run.u, 0.0) << "the guess is kept";
 }
 
 TEST(Newton, FailsWhereTheResidualIsNotFinite) {
   Equation equation([](double u) { return std::log(u); }, [](double u) { return 1.0 / u; });
-  const Run run = damped(equation, -1.0);
+  const Outcome run = damped(equation, -1.0);
   EXPECT_EQ(run.status.code, StatusCode::non_finite);
   EXPECT_EQ(run.work.newton_iterations, 0u);
 }
@@ -120,9 +120,9 @@ TEST(Newton, FailsWhereTheResidualIsNotFinite) {
 /// Two solves with one matrix: of a first equation and of another one that is a little different.
 class Simplified : public testing::Test {
  protected:
-  Run solve(Equation& equation, double start, double parameter) {
+  Outcome solve(Equation& equation, double start, double parameter) {
     Vector u = Vector::Constant(1, start);
-    Run run;
+    Outcome run;
     run.status = newton_.solve(equation, u, parameter, 1.0, 0.0, run.work);
     run.u = u[0];
     return run;
@@ -134,7 +134,7 @@ TEST_F(Simplified, KeepsItsMatrixOverSolvesWithTheSameParameter) {
   Equation equation([](double u) { return u + 0.01 * u * u - 1.0; }, [](double u) { return 1.0 + 0.02 * u; });
   const double root = (std::sqrt(1.04) - 1.0) / 0.02;
   for (const double start : {1.0, 0.99, 1.01}) {
-    const Run run = solve(equation, start, 0.5);
+    const Outcome run = solve(equation, start, 0.5);
     EXPECT_TRUE(run.status.ok()) << run.status.describe();
     EXPECT_NEAR(run.u, root, 4e-16);
     EXPECT_EQ(equation.last(), run.u);
@@ -152,7 +152,7 @@ TEST_F(Simplified, TakesANewMatrixWhereTheOldOneLeadsAway) {
   ASSERT_TRUE(solve(steep, 0.5, 1.0).status.ok());
   // u ↦ u − (4 u − 4) multiplies the error by −3 with the matrix of `steep`.
   Equation steeper([](double u) { return 4.0 * u - 4.0; }, [](double) { return 4.0; });
-  const Run run = solve(steeper, 0.5, 1.0);
+  const Outcome run = solve(steeper, 0.5, 1.0);
   EXPECT_TRUE(run.status.ok()) << run.status.describe();
   EXPECT_EQ(run.u, 1.0);
   EXPECT_EQ(steeper.matrices(), 1);
@@ -160,7 +160,7 @@ TEST_F(Simplified, TakesANewMatrixWhereTheOldOneLeadsAway) {
 
 TEST_F(Simplified, HandsOverToTheDampedIterationWhereANewMatrixLeadsAwayToo) {
   Equation equation = arc_tangent();
-  const Run run = solve(equation, 3.0, 1.0);
+  const Outcome run = solve(equation, 3.0, 1.0);
   EXPECT_TRUE(run.status.ok()) << run.status.describe();
   EXPECT_NEAR(run.u, 0.0, 1e-12);
   EXPECT_GT(equation.matrices(), 2);

@@ -132,7 +132,15 @@ case "$1 $2" in
       *"verlet --"*) cp "FILE" result.h5; echo "cannot go on" >&2; exit EXIT ;;
     esac
     cp "FILE" result.h5; echo "result.h5: 7 frames, $$.5e-3 s" ;;
-  run*) echo "all are the same bit for bit" ;;
+  "run "*.h5)
+    for word; do folder=$word; done
+    name=$(basename "$2" .h5).repeated.h5
+    mkdir -p "$folder" && cp "FILE" "$folder/$name"; echo "REPEATED" ;;
+  "run "*)
+    for word; do folder=$word; done
+    name=$(basename "$2" .toml).h5
+    case "$2" in *unknown*) echo "unknown kind" >&2; exit 2 ;; esac
+    mkdir -p "$folder"; [ -e "$folder/$name" ] || cp "FILE" "$folder/$name" ;;
 esac
 """
 
@@ -145,10 +153,10 @@ class Programs(unittest.TestCase):
         write_file(self.root / "a.h5")
         self.before = self.program("before")
 
-    def program(self, name, file="a.h5", refusal="a fixed step", code="3"):
+    def program(self, name, file="a.h5", refusal="a fixed step", code="3", repeated="are the same bit for bit"):
         path = self.root / name
-        path.write_text(PROGRAM.replace("FILE", str(self.root / file)).replace("REFUSAL", refusal).replace("EXIT", code)
-                        + f"# {name}\n")
+        text = PROGRAM.replace("FILE", str(self.root / file)).replace("REFUSAL", refusal).replace("EXIT", code)
+        path.write_text(text.replace("REPEATED", repeated) + f"# {name}\n")
         path.chmod(0o755)
         return path
 
@@ -177,6 +185,28 @@ class Programs(unittest.TestCase):
                 self.assertEqual(answer.returncode, 1, answer.stderr)
                 self.assertIn(word, answer.stdout)
                 self.assertIn("\nDIFFERENT\n", answer.stdout)
+
+    def test_studies_are_repeated_and_run_anew(self):
+        write_file(self.root / "b.h5")
+        with h5py.File(self.root / "b.h5", "r+") as file:
+            file["cases/b-rk4/steps"][3] = 7
+        studies = self.root / "studies"
+        (studies / "scenes").mkdir(parents=True)
+        for name in ("one.toml", "unknown.toml", "scenes/scene.toml"):
+            (studies / name).write_text("")
+        options = ("--no-simulations", "--studies", studies)
+        answer = self.compare(self.program("after"), *options)
+        self.assertEqual(answer.returncode, 0, answer.stdout + answer.stderr)
+        self.assertIn("BEFORE cannot run it: unknown kind", answer.stdout)
+        self.assertIn("studies: 2 compared, 0 differ, 21 values, 1 refused", answer.stdout)
+        for name, changes, word in (("number", {"file": "b.h5"}, "steps[3]: 3 before, 7 after"),
+                                    ("repetition", {"repeated": "1 of 5 columns differ"}, "AFTER does not repeat")):
+            after = self.program(name, **changes)
+            for attempt in ("first", "from what was kept"):
+                with self.subTest(name, attempt=attempt):
+                    answer = self.compare(after, *options)
+                    self.assertEqual(answer.returncode, 1, answer.stderr)
+                    self.assertIn(word, answer.stdout)
 
     def test_a_method_that_is_gone_is_a_difference_and_a_new_one_is_told(self):
         after = self.program("after")
