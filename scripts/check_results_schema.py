@@ -95,6 +95,8 @@ def check_dataset(path, dataset, row, sizes):
     if shape == "any":
         return  # the general description of a column leaves its attributes open, too
     texts = [{"attribute": name, "type": "text"} for name in re.findall(r"attribute `(\w+)`", row["meaning"])]
+    if "missing" in dataset.attrs and row["type"] == "int64":
+        texts.append({"attribute": "missing", "type": "text"})  # see "Conventions"
     yield from check_attributes([{"attribute": "unit", "type": "text"}, *texts], dataset.attrs, f"{path}: ")
     described = [size.strip() for size in shape.strip("()").split(",") if size.strip()]
     if len(described) != len(dataset.shape):

@@ -21,7 +21,8 @@ void add_list_command(CLI::App& app, Action& action);
 void add_describe_command(CLI::App& app, Action& action);
 void add_simulate_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_run_command(CLI::App& app, Action& action, const std::string& command_line);
-void add_verify_command(CLI::App& app, Action& action);
+void add_verify_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_show_command(CLI::App& app, Action& action);
+void add_schema_command(CLI::App& app, Action& action);
 
 }  // namespace fw::app

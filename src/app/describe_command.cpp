@@ -20,9 +20,24 @@ namespace {
 
 using text::JsonWriter;
 
-std::string describe_method(const catalog::MethodEntry& entry) {
-  const MethodInfo& info = entry.info();
-  std::string text = fmt::format("{}\n{}\n\n", info.name, info.title);
+/// A method with the options of a call.
+struct DescribedMethod {
+  std::string call;
+  const catalog::MethodEntry& entry;
+  MethodInfo info;
+  schemes::SchemeData coefficients;
+
+  explicit DescribedMethod(const std::string& text)
+      : call(text),
+        entry(catalog::find_method(catalog::parse_method_call(text).name)),
+        info(catalog::make_method(text)->info()),
+        coefficients(catalog::theory_of_call(text).coefficients) {}
+};
+
+std::string describe_method(const DescribedMethod& method) {
+  const MethodInfo& info = method.info;
+  const std::vector<catalog::OptionInfo>& options = method.entry.options;
+  std::string text = fmt::format("{}\n{}\n\n", method.call, info.title);
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<24} {}\n", label, value);
   };
@@ -42,23 +57,21 @@ std::string describe_method(const catalog::MethodEntry& entry) {
                            : info.is_l_stable ? "A-stable, L-stable"
                            : info.is_a_stable ? "A-stable"
                                               : "conditional");
-  line("works on", info.needs_springs           ? "mass-spring systems"
-                   : info.needs_position_forces ? "M q'' = f(t, q)"
-                   : info.needs_second_order    ? "M q'' = f(t, q, q')"
-                                                : "y' = f(t, y)");
+  line("works on", works_on(info.needs));
   line("literature", info.reference);
-  if (!entry.options.empty()) {
-    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", info.name, entry.options.front().name,
-                        entry.options.front().default_value);
-    for (const catalog::OptionInfo& option : entry.options) {
+  if (!options.empty()) {
+    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", method.entry.name, options.front().name,
+                        options.front().default_value);
+    for (const catalog::OptionInfo& option : options) {
       text += fmt::format("  {:<24} {} (default {})\n", option.name, option.expected, option.default_value);
     }
   }
-  const std::vector<schemes::NamedProperty> derived = schemes::property_list(schemes::derive(entry.data));
+  const std::vector<schemes::NamedProperty> derived =
+      schemes::property_list(schemes::derive(method.coefficients));
   if (!derived.empty()) {
     text += "\nDerived from the coefficients\n";
     for (const schemes::NamedProperty& property : derived) line(property.label.c_str(), to_text(property));
-    text += '\n' + schemes::coefficients_text(entry.data);
+    text += '\n' + schemes::coefficients_text(method.coefficients);
   }
   return text;
 }
@@ -111,11 +124,12 @@ void write_tableau(JsonWriter& json, const schemes::SchemeData& data) {
   json.end_array().end_object();
 }
 
-std::string method_json(const catalog::MethodEntry& entry) {
-  const MethodInfo& info = entry.info();
+std::string method_json(const DescribedMethod& method) {
+  const MethodInfo& info = method.info;
   JsonWriter json;
   json.begin_object();
-  json.key("type").value("method").key("name").value(info.name).key("title").value(info.title);
+  json.key("type").value("method").key("name").value(info.name).key("call").value(method.call);
+  json.key("title").value(info.title);
   json.key("family").value(info.family).key("formula").value(info.formula);
   json.key("order").value(std::int64_t{info.order});
   json.key("order_with_velocity_forces").value(std::int64_t{info.order_with_velocity_forces});
@@ -124,18 +138,19 @@ std::string method_json(const catalog::MethodEntry& entry) {
   json.key("symplectic").value(info.is_symplectic).key("a_stable").value(info.is_a_stable);
   json.key("l_stable").value(info.is_l_stable).key("reference").value(info.reference);
   json.key("options").begin_array();
-  for (const catalog::OptionInfo& option : entry.options) {
+  for (const catalog::OptionInfo& option : method.entry.options) {
     json.begin_object().key("name").value(option.name).key("default").value(option.default_value);
     json.key("expected").value(option.expected).end_object();
   }
   json.end_array();
   json.key("derived").begin_object();
-  for (const schemes::NamedProperty& property : schemes::property_list(schemes::derive(entry.data))) {
+  for (const schemes::NamedProperty& property :
+       schemes::property_list(schemes::derive(method.coefficients))) {
     json.key(property.key);
     std::visit([&](const auto& value) { json.value(value); }, property.value);
   }
   json.end_object();
-  write_tableau(json, entry.data);
+  write_tableau(json, method.coefficients);
   json.end_object();
   return json.text() + "\n";
 }
@@ -169,9 +184,13 @@ std::string entry_text(const char* type, const std::string& name, const std::str
 }
 
 std::string describe(const std::string& name, bool as_json) {
+  const std::string called = name.substr(0, name.find('['));  // a method may have options
   std::vector<std::string> names;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (entry.name == name) return as_json ? method_json(entry) : describe_method(entry);
+    if (entry.name == called) {
+      const DescribedMethod method(name);
+      return as_json ? method_json(method) : describe_method(method);
+    }
     names.push_back(entry.name);
   }
   for (const ProblemEntry& entry : catalog::problems()) {

@@ -47,7 +47,7 @@ std::string methods_json(bool only_oracles) {
     json.key("explicit").value(info.is_explicit).key("multistep").value(info.is_multistep);
     json.key("adaptive").value(info.is_adaptive).key("symplectic").value(info.is_symplectic);
     json.key("a_stable").value(info.is_a_stable).key("l_stable").value(info.is_l_stable);
-    json.key("needs_second_order").value(info.needs_second_order);
+    json.key("needs_second_order").value(info.needs.has(Capability::second_order));
     json.key("reference").value(info.reference);
     json.end_object();
   }

@@ -69,8 +69,9 @@ int run(int argc, char** argv) {
   fw::app::add_describe_command(app, action);
   fw::app::add_simulate_command(app, action, command_line);
   fw::app::add_run_command(app, action, command_line);
-  fw::app::add_verify_command(app, action);
+  fw::app::add_verify_command(app, action, command_line);
   fw::app::add_show_command(app, action);
+  fw::app::add_schema_command(app, action);
   app.require_subcommand(0, 1);
   app.allow_extras();  // of the top level only, which check_subcommand names more clearly
   try {

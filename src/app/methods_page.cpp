@@ -24,9 +24,10 @@ std::string cell(std::string text) {
 
 std::string order_cell(const MethodInfo& info) {
   if (info.order == 0) return "variable";
-  const std::string with_dampers = info.needs_position_forces || info.order_with_velocity_forces == 0
-                                       ? "–"
-                                       : std::to_string(info.order_with_velocity_forces);
+  const std::string with_dampers =
+      info.needs.has(Capability::position_forces) || info.order_with_velocity_forces == 0
+          ? "–"
+          : std::to_string(info.order_with_velocity_forces);
   std::string text = fmt::format("{} / {}", info.order, with_dampers);
   if (info.embedded_order > 0) text += fmt::format(" ({})", info.embedded_order);
   return text;
@@ -64,14 +65,14 @@ std::string properties_cell(const MethodInfo& info, const schemes::DerivedProper
     words.push_back(fmt::format("stage order {}", *derived.stage_order));
   if (derived.first_same_as_last.value_or(false)) words.emplace_back("FSAL");
   if (info.is_adaptive) words.emplace_back("adaptive");
-  if (info.needs_springs) words.emplace_back("springs only");
-  if (info.needs_force_splitting) words.emplace_back("stiff and soft forces");
+  if (info.needs.has(Capability::springs)) words.emplace_back("springs only");
+  if (info.needs.has(Capability::force_splitting)) words.emplace_back("stiff and soft forces");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string row(const catalog::MethodEntry& entry) {
   const MethodInfo& info = entry.info();
-  const schemes::DerivedProperties derived = schemes::derive(entry.data);
+  const schemes::DerivedProperties derived = schemes::derive(entry.theory({}).coefficients);
   return fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, cell(info.title),
                      order_cell(info), info.stages, stability_cell(info, derived),
                      properties_cell(info, derived), cell(info.reference));

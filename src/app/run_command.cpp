@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <sys/auxv.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -31,20 +30,6 @@ struct RunArguments {
   std::optional<double> time_limit;
   bool quick = false, force = false, directory_given = false;
 };
-
-/// SHA-256 of the executable: cases that other code computed are not taken for finished.
-std::string program_identity() {
-  // Without /proc (a bare chroot) the kernel still tells the path that was executed.
-  const auto* executed = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
-  std::string bytes;
-  for (const char* path : {"/proc/self/exe", executed}) {
-    if (path == nullptr || !bytes.empty()) continue;
-    std::ifstream file(path, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(file), {});
-  }
-  if (bytes.empty()) throw SystemError("cannot read the executable to identify the program");
-  return sha256_hex(bytes);
-}
 
 /// Whether the argument is a result file, whose study is repeated; what HDF5 cannot open is a study file.
 bool is_result_file(const std::filesystem::path& path) {

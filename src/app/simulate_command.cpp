@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
+#include "app/checkpoint_writer.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
@@ -14,29 +16,32 @@
 #include "mechanics/mass_spring_system.hpp"
 #include "record/frame_selector.hpp"
 #include "scene/scene.hpp"
+#include "store/checkpoint_file.hpp"
 #include "store/mass_spring_quantities.hpp"
 #include "store/trajectory_writer.hpp"
 #include "store/write_target.hpp"
 #include "store/xdmf.hpp"
+#include "system/provenance.hpp"
 
 namespace fw::app {
 
 namespace {
 
 struct SimulateArguments {
-  std::string scene, method, output, petsc;
-  double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0;
+  std::string scene, method, output, petsc, checkpoint, continued;
+  double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
   bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
+  bool has_end_time = false, has_frames = false, has_every = false;
   std::int64_t frames = 101;
 };
 
 constexpr std::int64_t largest_frame_count = 1'000'000'000;
 
-/// Passes steps on to the frames, shows progress and listens to the user's interrupt.
+/// Passes steps on to the frames and shows progress.
 class SimulationObserver final : public Observer {
  public:
-  SimulationObserver(record::FrameSelector& frames, double end_time, const std::atomic<bool>& interrupted)
-      : frames_(frames), end_time_(end_time), interrupted_(interrupted), bar_("steps") {}
+  SimulationObserver(record::FrameSelector& frames, double end_time)
+      : frames_(frames), end_time_(end_time), bar_("steps") {}
 
   bool observe(const StepView& view) override {
     frames_.observe(view);
@@ -44,14 +49,13 @@ class SimulationObserver final : public Observer {
       bar_.update(view.time / end_time_, static_cast<double>(view.index),
                   fmt::format("t = {:.4g} s", view.time));
     }
-    return !interrupted_.load(std::memory_order_relaxed);
+    return true;
   }
   void finish() { bar_.clear(); }
 
  private:
   record::FrameSelector& frames_;
   double end_time_;
-  const std::atomic<bool>& interrupted_;
   ProgressBar bar_;
 };
 
@@ -145,7 +149,96 @@ std::unique_ptr<Integrator> make_method(const SimulateArguments& arguments) {
   return catalog::make_method(call);
 }
 
+/// The program as a checkpoint names it.
+std::string program_name() {
+  const Provenance here = provenance();
+  return fmt::format("federwerk {} ({}{}, {})", version(), here.git_commit.substr(0, 12),
+                     here.git_dirty ? ", changed" : "", here.compiler);
+}
+
+/// What the user has given beside --continue has to be what the checkpoint was made with; the rest comes from
+/// it.
+void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& arguments) {
+  const auto compare = [&](bool is_given, const char* what, const auto& found, const auto& expected) {
+    if (!is_given || found == expected) return;
+    throw InputError(fmt::format("{}: found {}, expected {} as in the checkpoint \"{}\"", what, found,
+                                 expected, arguments.continued));
+  };
+  if (!arguments.scene.empty() && scene::read_scene(arguments.scene).resolved_toml != from.scene) {
+    throw InputError(
+        fmt::format("scene \"{}\" is not the scene of the checkpoint \"{}\" (\"{}\" at that time)",
+                    arguments.scene, arguments.continued, from.scene_name));
+  }
+  compare(!arguments.method.empty(), "--method", arguments.method, from.method);
+  compare(arguments.has_petsc, "--petsc", arguments.petsc, from.petsc);
+  compare(arguments.has_end_time, "--t-end", arguments.end_time, from.end_time);
+  compare(arguments.has_frames, "--frames", arguments.frames, static_cast<std::int64_t>(from.frames));
+  if (const auto* fixed = std::get_if<FixedStep>(&from.control)) {
+    if (arguments.has_relative || arguments.has_absolute) {
+      throw InputError(fmt::format("found tolerances, expected --step {} as in the checkpoint \"{}\"",
+                                   fixed->step, arguments.continued));
+    }
+    compare(arguments.has_step, "--step", arguments.step, fixed->step);
+    arguments.step = fixed->step;
+    arguments.has_step = true;
+  } else {
+    const auto& adaptive = std::get<AdaptiveStep>(from.control);
+    if (arguments.has_step) {
+      throw InputError(
+          fmt::format("found --step, expected --rtol {} and --atol {} as in the checkpoint \"{}\"",
+                      adaptive.relative_tolerance, adaptive.absolute_tolerance, arguments.continued));
+    }
+    compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
+    compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
+    arguments.relative_tolerance = adaptive.relative_tolerance;
+    arguments.absolute_tolerance = adaptive.absolute_tolerance;
+    arguments.has_relative = arguments.has_absolute = true;
+  }
+  arguments.scene = from.scene_name;
+  arguments.method = from.method;
+  arguments.petsc = from.petsc;
+  arguments.has_petsc = !from.petsc.empty();
+  arguments.end_time = from.end_time;
+  arguments.frames = static_cast<std::int64_t>(from.frames);
+  if (arguments.output.empty()) arguments.output = from.output;
+  if (const std::string here = program_name(); here != from.program) {
+    fmt::print(
+        stderr,
+        "federwerk: note: the checkpoint was written by {}, this is {}; the end may differ in its last "
+        "digits\n",
+        from.program, here);
+  }
+}
+
+void check_checkpoint_options(const SimulateArguments& arguments) {
+  if (arguments.checkpoint.empty() != !arguments.has_every) {
+    throw InputError(arguments.has_every ? "found --every without --checkpoint, expected both"
+                                         : "found --checkpoint without --every, expected both");
+  }
+  if (arguments.checkpoint.empty()) return;
+  if (!std::isfinite(arguments.every) || arguments.every <= 0.0) {
+    throw InputError(fmt::format("--every: found {}, expected a finite number > 0", arguments.every));
+  }
+  store::check_checkpoint_target(arguments.checkpoint);
+}
+
+/// The frames of the run before, into the sink of the one that continues it.
+void repeat_frames(const store::Checkpoint& from, record::FrameSelector& frames, record::FrameSink& sink) {
+  const std::size_t count = from.frame_times.size();
+  const std::size_t size = count == 0 ? 0 : from.frame_states.size() / count;
+  for (std::size_t k = 0; k < count; ++k) {
+    sink.frame(from.frame_times[k],
+               ConstVectorMap(from.frame_states.data() + k * size, static_cast<Index>(size)));
+  }
+  frames.resume(count);
+}
+
 int simulate(SimulateArguments arguments, const std::string& command_line) {
+  std::optional<store::Checkpoint> from;
+  if (!arguments.continued.empty()) {
+    from = store::read_checkpoint(arguments.continued);
+    take_from_checkpoint(*from, arguments);
+  }
   const std::unique_ptr<Integrator> integrator = make_method(arguments);
   const StepControl control = step_control(arguments, integrator->info());
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
@@ -158,6 +251,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   const StepCount count = check_interval(control, integrator->info(), arguments.end_time);
   if (arguments.output.empty()) arguments.output = default_output(arguments);
   store::check_writable_target(arguments.output);
+  check_checkpoint_options(arguments);
   if (arguments.xdmf) {
     const std::filesystem::path xdmf = std::filesystem::path(arguments.output).replace_extension(".xdmf");
     if (xdmf == arguments.output) {
@@ -167,7 +261,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     store::check_writable_place(xdmf);
   }
 
-  scene::Scene scene = scene::read_scene(arguments.scene);
+  scene::Scene scene =
+      from ? scene::parse_scene(from->scene, arguments.scene) : scene::read_scene(arguments.scene);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   const store::FileHeader header{
       .kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
@@ -178,7 +273,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   scene.velocity.resize(0);
   const auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
   ivp.system = system;
-  if (integrator->info().needs_second_order && ivp.system->second_order() == nullptr) {
+  if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
   tell_of_short_last_step(control, count, arguments.end_time);
@@ -189,20 +284,41 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
       std::holds_alternative<FixedStep>(control) ? std::min(wanted, count.total() + 1) : wanted;
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
                                  static_cast<Index>(expected));
-  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, writer);
-  SimulationObserver observer(frames, arguments.end_time, interrupted);
-  Solution solution = integrator->solve(ivp, control, observer);
-  observer.finish();
-  if (solution.status.code == StatusCode::stopped_by_observer && interrupted) {
-    solution.status = {StatusCode::interrupted,
-                       fmt::format("interrupted by the user at t = {:.6g}", solution.time)};
+  SolveOptions options{.stop = StopToken(interrupted)};
+  std::optional<CheckpointWriter> checkpoints;
+  if (!arguments.checkpoint.empty()) {
+    checkpoints.emplace(arguments.checkpoint, arguments.every,
+                        store::Checkpoint{.program = program_name(),
+                                          .scene_name = arguments.scene,
+                                          .scene = header.spec,
+                                          .method = arguments.method,
+                                          .petsc = arguments.petsc,
+                                          .output = arguments.output,
+                                          .control = control,
+                                          .end_time = arguments.end_time,
+                                          .frames = wanted,
+                                          .time = from ? from->time : ivp.t0},
+                        options.stop, writer);
+    options.checkpoints = &*checkpoints;
   }
+  record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
+  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
+  if (from) {
+    repeat_frames(*from, frames, sink);
+    options.resume = from->run;
+  }
+  SimulationObserver observer(frames, arguments.end_time);
+  const Solution solution = integrator->solve(ivp, control, observer, options);
+  observer.finish();
   writer.finish(solution.status, solution.work);
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
-    fmt::print(stderr, "federwerk: {}; what was computed is in {}\n", solution.status.describe(),
-               arguments.output);
+    fmt::print(stderr, "federwerk: {}; what was computed is in {}{}\n", solution.status.describe(),
+               arguments.output,
+               checkpoints && checkpoints->written() > 0
+                   ? fmt::format("; --continue {} goes on from the last checkpoint", arguments.checkpoint)
+                   : "");
     return exit_failure;
   }
   return exit_success;
@@ -213,11 +329,12 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
 void add_simulate_command(CLI::App& app, Action& action, const std::string& command_line) {
   CLI::App* command = app.add_subcommand("simulate", "Simulates one scene with one method into an HDF5 file");
   auto arguments = std::make_shared<SimulateArguments>();
-  command->add_option("scene", arguments->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
-  command
-      ->add_option("--method", arguments->method, "Method, for example rk4; see \"federwerk list methods\"")
-      ->required()
-      ->type_name("NAME");
+  CLI::Option* scene =
+      command->add_option("scene", arguments->scene, "Scene file (TOML)")->type_name("SCENE.toml");
+  CLI::Option* method = command
+                            ->add_option("--method", arguments->method,
+                                         "Method, for example rk4; see \"federwerk list methods\"")
+                            ->type_name("NAME");
   CLI::Option* step =
       command->add_option("--step", arguments->step, "Step [s] of a fixed-step method")->type_name("H");
   CLI::Option* relative =
@@ -231,16 +348,42 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
                                         "Options of a petsc: method or of the linear solver petsc in PETSc's "
                                         "notation, as \"-ksp_type gmres -pc_type ilu\"")
                            ->type_name("TEXT");
-  command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")
-      ->required()
-      ->type_name("T");
-  command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
-      ->capture_default_str()
-      ->type_name("N");
+  CLI::Option* end_time =
+      command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->type_name("T");
+  CLI::Option* frames =
+      command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
+          ->capture_default_str()
+          ->type_name("N");
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
       ->type_name("FILE.h5");
   command->add_flag("--xdmf", arguments->xdmf, "Also write FILE.xdmf, which ParaView opens");
-  command->callback([arguments, step, relative, absolute, petsc, &action, command_line] {
+  command
+      ->add_option(
+          "--checkpoint", arguments->checkpoint,
+          "Keep the run in FILE, so that --continue can go on from it; only for methods of federwerk")
+      ->type_name("FILE");
+  CLI::Option* every =
+      command
+          ->add_option(
+              "--every", arguments->every,
+              "Time between checkpoints [s] of the simulation: one is written after the first step that "
+              "reaches a multiple of S, and one where the run is interrupted")
+          ->type_name("S");
+  command
+      ->add_option(
+          "--continue", arguments->continued,
+          "Go on from a checkpoint, to the same bits as without a stop; scene, method, step, end time "
+          "and frames come from it")
+      ->type_name("FILE");
+  command->callback([=, &action] {
+    if (arguments->continued.empty()) {
+      for (const CLI::Option* needed : {scene, method, end_time}) {
+        if (needed->count() == 0) throw CLI::RequiredError(needed->get_name());
+      }
+    }
+    arguments->has_end_time = end_time->count() > 0;
+    arguments->has_frames = frames->count() > 0;
+    arguments->has_every = every->count() > 0;
     arguments->has_step = step->count() > 0;
     arguments->has_petsc = petsc->count() > 0;
     arguments->has_relative = relative->count() > 0;

@@ -1,14 +1,19 @@
 #include "app/study_run.hpp"
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 
 #include "analysis/reference/reference_cache.hpp"
 #include "app/progress_bar.hpp"
+#include "core/error.hpp"
 #include "store/study_store.hpp"
 #include "study/runner.hpp"
+#include "system/sha256.hpp"
 #include "text/text_table.hpp"
 
 namespace fw::app {
@@ -34,6 +39,19 @@ void count(const study::CaseResult& result, Tally& tally) {
 
 }  // namespace
 
+std::string program_identity() {
+  // Without /proc (a bare chroot) the kernel still tells the path that was executed.
+  const auto* executed = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  std::string bytes;
+  for (const char* path : {"/proc/self/exe", executed}) {
+    if (path == nullptr || !bytes.empty()) continue;
+    std::ifstream file(path, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  if (bytes.empty()) throw SystemError("cannot read the executable to identify the program");
+  return sha256_hex(bytes);
+}
+
 Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
                 const std::atomic<bool>& interrupted) {
   using Earlier = store::StudyStore::Earlier;
@@ -46,7 +64,7 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   Tally tally;
   std::size_t done = 0;
   study::RunOptions options;
-  options.context = {.interrupted = &interrupted,
+  options.context = {.stop = StopToken(interrupted),
                      .reference_cache = analysis::ReferenceCache::default_directory()};
   options.program = run.program;
   options.force = run.force;

@@ -18,6 +18,9 @@ struct PlannedStudy {
   bool repeats = false;  ///< `source` is a result file
 };
 
+/// SHA-256 of the executable: cases that other code computed are not taken for finished. Throws SystemError.
+std::string program_identity();
+
 /// What `run` was asked to do with every study.
 struct StudyRunOptions {
   std::string command_line;

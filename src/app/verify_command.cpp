@@ -1,178 +1,209 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <thread>
 
-#include "analysis/verification/verification.hpp"
+#include "analysis/reference/reference_cache.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
-#include "catalog/methods.hpp"
+#include "app/study_run.hpp"
+#include "catalog/builtin_catalog.hpp"
+#include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
+#include "store/study_store.hpp"
+#include "study/runner.hpp"
 #include "text/json_writer.hpp"
 #include "text/text_table.hpp"
+#include "text/toml_writer.hpp"
 
 namespace fw::app {
 
 namespace {
 
-using analysis::Finding;
-using analysis::PropertyCheck;
+using study::CaseResult;
+using study::StudyResult;
 
-constexpr const char* oracle_for_agreement = "sundials:cvode_bdf";
-
-/// The findings on one method.
-struct Verification {
-  std::string method;
-  std::vector<PropertyCheck> checks;
+struct VerifyArguments {
+  std::vector<std::string> methods{};
+  std::string output{};
+  std::optional<double> time_limit{};
+  bool json = false;
+  bool all = false;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 };
 
-std::string_view to_string(Finding finding) {
-  switch (finding) {
-    case Finding::holds:
-      return "holds";
-    case Finding::fails:
-      return "fails";
-    case Finding::not_applicable:
-      break;
+/// The study that the command line asks for.
+study::Plan plan_of(const VerifyArguments& arguments) {
+  std::string text = "kind = \"verify\"\ntitle = \"Verification of schemes\"\n";
+  if (!arguments.methods.empty()) {
+    std::vector<std::string> quoted;
+    for (const std::string& call : arguments.methods) quoted.push_back(toml_quoted(call));
+    text += fmt::format("methods = [{}]\n", fmt::join(quoted, ", "));
   }
-  return "not applicable";
+  return study::read_plan(CheckedTable::parse_text(text, "verify"), catalog::study_kinds(),
+                          catalog::BuiltinCatalog(), false);
 }
 
-Verification verify_method(const std::string& call) {
-  const auto open = call.find('[');
-  const catalog::MethodEntry& entry = catalog::find_method(call.substr(0, open));
-  const std::unique_ptr<Integrator> integrator = catalog::make_method(call);
-  const std::unique_ptr<Integrator> oracle = catalog::make_method(oracle_for_agreement);
-  try {
-    return {call, analysis::verify({*integrator, entry.data, oracle.get()})};
-  } catch (const std::exception& error) {
-    // A scheme that throws where it should return a Status has failed; the others go on.
-    return {call, {{.property = "runs", .finding = Finding::fails, .reason = error.what()}}};
-  }
-}
+/// Of a verification whose result goes to the terminal only.
+class NothingKept final : public study::CaseArchive {
+ public:
+  std::optional<CaseResult> find(const std::string&) override { return std::nullopt; }
+  void keep(const CaseResult&) override {}
+};
 
-/// The methods that were verified before the user interrupted, in the order of `calls`.
-std::vector<Verification> verify_all(const std::vector<std::string>& calls, unsigned jobs,
-                                     const std::atomic<bool>& interrupted) {
-  std::vector<Verification> results(calls.size());
-  std::atomic<std::size_t> next{0}, done{0};
-  std::mutex output;
-  ProgressBar bar("schemes");
-  const auto work = [&] {
-    for (std::size_t i = next++; i < calls.size() && !interrupted; i = next++) {
-      results[i] = verify_method(calls[i]);
-      const std::size_t finished = ++done;
-      const std::lock_guard lock(output);
-      bar.update(static_cast<double>(finished) / static_cast<double>(calls.size()),
-                 static_cast<double>(finished), calls[i]);
+/// One property of one method, as it is printed.
+struct Row {
+  std::string method, property, claimed, derived, measured, verdict, reason;
+};
+
+/// A method that could not be verified has one row, which says why.
+std::vector<Row> rows_of(const StudyResult& result) {
+  std::vector<Row> rows;
+  for (const CaseResult& method : result.cases) {
+    const auto cell = std::find_if(method.summary.begin(), method.summary.end(),
+                                   [](const study::SummaryCell& known) { return known.name == "method"; });
+    const std::string call = cell != method.summary.end() ? std::get<std::string>(cell->value) : method.id;
+    if (method.columns.empty()) {
+      rows.push_back({call, "runs", "", "", "", std::string(to_string(method.verdict)), method.reason});
+      continue;
     }
-  };
-  std::vector<std::thread> threads;
-  for (unsigned k = 1; k < jobs; ++k) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  bar.clear();
-  std::erase_if(results, [](const Verification& result) { return result.method.empty(); });
-  return results;
+    const auto texts = [&](const char* name) -> const std::vector<std::string>& {
+      return std::get<std::vector<std::string>>(study::column_of(method, name).values);
+    };
+    for (std::size_t k = 0; k < texts("property").size(); ++k) {
+      rows.push_back({call, texts("property")[k], texts("claimed")[k], texts("derived")[k],
+                      texts("measured")[k], texts("verdict")[k], texts("reason")[k]});
+    }
+  }
+  return rows;
 }
 
-std::string table(const std::vector<Verification>& results, bool all) {
+std::string table(const StudyResult& result, bool all) {
   using text::TextTable;
-  std::vector<std::string> method, property, claimed, derived, measured, verdict, reason;
-  std::size_t holds = 0, fails = 0, skipped = 0;
-  for (const Verification& result : results) {
-    for (const PropertyCheck& check : result.checks) {
-      ++(check.finding == Finding::holds ? holds : check.finding == Finding::fails ? fails : skipped);
-      if (check.finding == Finding::not_applicable && !all) continue;
-      method.push_back(result.method);
-      property.push_back(check.property);
-      claimed.push_back(check.claimed);
-      derived.push_back(check.derived.size() > 28 ? check.derived.substr(0, 25) + "..." : check.derived);
-      measured.push_back(check.measured);
-      verdict.emplace_back(to_string(check.finding));
-      reason.push_back(check.reason);
-    }
-  }
+  const std::vector<Row> rows = rows_of(result);
+  const auto count = [&](Verdict verdict) {
+    return std::count_if(rows.begin(), rows.end(),
+                         [verdict](const Row& row) { return row.verdict == to_string(verdict); });
+  };
   TextTable text;
-  text.add_column("method", TextTable::Align::left, method);
-  text.add_column("property", TextTable::Align::left, property);
-  text.add_column("claimed", TextTable::Align::left, claimed);
-  text.add_column("derived", TextTable::Align::left, derived);
-  text.add_column("measured", TextTable::Align::left, measured);
-  text.add_column("verdict", TextTable::Align::left, verdict);
-  text.add_column("reason", TextTable::Align::left, reason);
+  const auto add = [&](const char* name, std::string Row::*cell) {
+    std::vector<std::string> cells;
+    for (const Row& row : rows) {
+      if (!all && row.verdict == to_string(Verdict::not_applicable)) continue;
+      const bool is_long = cell == &Row::derived && row.derived.size() > 28;
+      cells.push_back(is_long ? row.derived.substr(0, 25) + "..." : row.*cell);
+    }
+    text.add_column(name, TextTable::Align::left, cells);
+  };
+  add("method", &Row::method);
+  add("property", &Row::property);
+  add("claimed", &Row::claimed);
+  add("derived", &Row::derived);
+  add("measured", &Row::measured);
+  add("verdict", &Row::verdict);
+  add("reason", &Row::reason);
   return text.text() + fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n",
-                                   results.size(), holds, fails, skipped);
+                                   result.cases.size(), count(Verdict::holds), count(Verdict::fails),
+                                   count(Verdict::not_applicable));
 }
 
-std::string json(const std::vector<Verification>& results) {
+std::string json(const StudyResult& result) {
   text::JsonWriter writer;
   writer.begin_array();
-  for (const Verification& result : results) {
-    for (const PropertyCheck& check : result.checks) {
-      writer.begin_object().key("method").value(result.method).key("property").value(check.property);
-      writer.key("claimed").value(check.claimed).key("derived").value(check.derived);
-      writer.key("measured").value(check.measured).key("verdict").value(to_string(check.finding));
-      writer.key("reason").value(check.reason).end_object();
-    }
+  for (const Row& row : rows_of(result)) {
+    writer.begin_object().key("method").value(row.method).key("property").value(row.property);
+    writer.key("claimed").value(row.claimed).key("derived").value(row.derived);
+    writer.key("measured").value(row.measured).key("verdict").value(row.verdict);
+    writer.key("reason").value(row.reason).end_object();
   }
   writer.end_array();
   return writer.text() + "\n";
 }
 
-struct VerifyArguments {
-  std::vector<std::string> methods{};
-  bool json = false;
-  bool all = false;
-  unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
-};
+StudyResult run(const study::Plan& plan, study::CaseArchive& archive, const VerifyArguments& arguments,
+                const std::string& program, const std::atomic<bool>& interrupted) {
+  ProgressBar bar("schemes");
+  study::RunOptions options;
+  options.context = {.stop = StopToken(interrupted),
+                     .reference_cache = analysis::ReferenceCache::default_directory()};
+  options.program = program;
+  options.jobs = arguments.jobs;
+  options.time_limit = arguments.time_limit;
+  options.waiting = [&](const study::RunProgress& progress) {
+    const auto done = static_cast<double>(progress.done);
+    bar.update(done / static_cast<double>(progress.total), done,
+               progress.running.empty() ? "" : progress.running.front());
+  };
+  StudyResult result = study::run_plan(plan, archive, options);
+  bar.clear();
+  return result;
+}
 
-int verify(const VerifyArguments& arguments) {
-  std::vector<std::string> calls = arguments.methods;
-  if (calls.empty()) {
-    for (const catalog::MethodEntry& entry : catalog::methods()) {
-      if (entry.info().has_fixed_step && entry.info().family != "oracle") calls.push_back(entry.name);
-    }
-  }
-  for (const std::string& call : calls)
+int verify(const VerifyArguments& arguments, const std::string& command_line) {
+  if (arguments.time_limit && !(*arguments.time_limit >= 0.0))
+    throw InputError(fmt::format("--time-limit: found {}, expected at least 0", *arguments.time_limit));
+  for (const std::string& call : arguments.methods)
     catalog::make_method(call);  // an unknown name ends before anything runs
+  const study::Plan plan = plan_of(arguments);
   const std::atomic<bool>& interrupted = install_interrupt_flag();
-  const std::vector<Verification> results = verify_all(calls, arguments.jobs, interrupted);
-  fmt::print("{}", arguments.json ? json(results) : table(results, arguments.all));
-  if (results.size() < calls.size()) {
-    fmt::print(stderr, "federwerk: interrupted: {} of {} methods were verified\n", results.size(),
-               calls.size());
+  StudyResult result;
+  if (arguments.output.empty()) {
+    NothingKept archive;
+    result = run(plan, archive, arguments, "", interrupted);
+  } else {
+    store::StudyStore archive(arguments.output);
+    result = run(plan, archive, arguments, program_identity(), interrupted);
+    archive.write(command_line, result);
+  }
+  fmt::print("{}", arguments.json ? json(result) : table(result, arguments.all));
+  if (!result.complete) {
+    fmt::print(stderr, "federwerk: interrupted: {} of {} methods were verified\n", result.cases.size(),
+               plan.cases.size());
     return exit_failure;
   }
-  for (const Verification& result : results) {
-    for (const PropertyCheck& check : result.checks) {
-      if (check.finding == Finding::fails) return exit_verdict_fails;
-    }
+  const auto not_computed = std::count_if(result.cases.begin(), result.cases.end(),
+                                          [](const CaseResult& method) { return method.key.empty(); });
+  if (not_computed > 0) {
+    fmt::print(stderr, "federwerk: {} of {} methods could not be verified\n", not_computed,
+               result.cases.size());
+    return exit_failure;
   }
-  return exit_success;
+  const bool fails = std::any_of(result.cases.begin(), result.cases.end(),
+                                 [](const CaseResult& method) { return method.verdict == Verdict::fails; });
+  return fails ? exit_verdict_fails : exit_success;
 }
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Action& action) {
+void add_verify_command(CLI::App& app, Action& action, const std::string& command_line) {
   CLI::App* command = app.add_subcommand(
       "verify",
       "Checks the claimed properties of the schemes: order, stability, symplecticity, conservation, ...");
   auto arguments = std::make_shared<VerifyArguments>();
   command
       ->add_option("--method", arguments->methods,
-                   "Only these methods (default: all our own; oracles only if named)")
+                   "Only these methods, with their options (default: all our own; oracles only if named)")
       ->type_name("NAME");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Result file of the study; methods that it holds already are not verified again")
+      ->type_name("FILE.h5");
+  command->add_option("--time-limit", arguments->time_limit, "Ends a method that takes longer [s]; 0: never")
+      ->type_name("S");
   command->add_flag("--json", arguments->json, "As JSON");
   command->add_flag("--all", arguments->all, "Prints properties that do not apply as well");
   command->add_option("--jobs", arguments->jobs, "Schemes checked at the same time")
-      ->check(CLI::Range(1u, 1024u))
+      ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  command->callback([arguments, &action] { action = [arguments] { return verify(*arguments); }; });
+  command->callback([arguments, &action, command_line] {
+    action = [arguments, command_line] { return verify(*arguments, command_line); };
+  });
 }
 
 }  // namespace fw::app

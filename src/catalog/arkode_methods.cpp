@@ -51,6 +51,8 @@ const Tableau& find_tableau(const std::vector<Tableau>& family, const std::strin
                                fmt::join(names, ", "), did_you_mean(name, names)));
 }
 
+constexpr const char* dormand_prince_table = "dormand_prince_7_4_5";
+
 /// A method of ARKODE with one of its tables or one tableau of a family of ours.
 template <class Tableau>
 MethodEntry arkode(const std::string& name, const std::string& default_table,
@@ -58,7 +60,16 @@ MethodEntry arkode(const std::string& name, const std::string& default_table,
                    const ArkodeOptions& defaults,
                    std::unique_ptr<Integrator> (*make_of_table)(const std::string&, const ArkodeOptions&),
                    std::unique_ptr<Integrator> (*make_of_tableau)(const Tableau&, const ArkodeOptions&)) {
-  return {name, std::move(options), {}, [=](const MethodOptions& given) {
+  const auto theory = [=](const MethodOptions& given) {
+    const std::string table = text(given, "table"), tableau = text(given, "tableau");
+    if (!tableau.empty()) return analysis::theory_on_linear_systems({find_tableau(family(), tableau)});
+    // ARKODE's default table of explicit methods; the names of others are its own [Reynolds et al. 2023].
+    if (table.empty() && default_table == dormand_prince_table) {
+      return analysis::theory_on_linear_systems({find_tableau(family(), "dormand_prince_54")});
+    }
+    return analysis::Theory{};
+  };
+  return {name, std::move(options), theory, [=](const MethodOptions& given) {
             const std::string table = text(given, "table"), tableau = text(given, "tableau");
             if (!table.empty() && !tableau.empty()) {
               throw InputError("options table and tableau: found both, expected one of them");
@@ -71,7 +82,7 @@ MethodEntry arkode(const std::string& name, const std::string& default_table,
 
 MethodEntry arkode_erk() {
   const ArkodeOptions defaults;
-  const std::string table = "dormand_prince_7_4_5";
+  const std::string table = dormand_prince_table;
   return arkode<schemes::ButcherTableau>("sundials:arkode_erk", table, schemes::explicit_tableaus,
                                          arkode_options(table, "explicit", defaults, false), defaults,
                                          oracles::make_arkode_erk, oracles::make_arkode_erk);

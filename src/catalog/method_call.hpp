@@ -1,8 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "settings/description.hpp"
 
 namespace fw::catalog {
 
@@ -23,6 +26,8 @@ struct OptionInfo {
   std::string name;
   std::string default_value;
   std::string expected;  ///< for people: "cg, cholesky or lu"
+  /// Type, range and default, of options that are declared (`declared_options`).
+  std::optional<settings::SettingDescription> setting{};
 };
 
 }  // namespace fw::catalog

@@ -4,21 +4,14 @@
 
 #include <algorithm>
 
+#include "catalog/declared_options.hpp"
+#include "catalog/integrator_options.hpp"
 #include "catalog/method_options.hpp"
 #include "catalog/oracle_methods.hpp"
 #include "core/error.hpp"
-#include "integrators/energy_momentum/average_vector_field.hpp"
 #include "integrators/energy_momentum/discrete_gradient.hpp"
-#include "integrators/exponential/exponential_rosenbrock_euler.hpp"
-#include "integrators/exponential/gautschi.hpp"
-#include "integrators/graphics/projective_dynamics.hpp"
-#include "integrators/graphics/xpbd.hpp"
 #include "integrators/special/implicit_euler_linearised.hpp"
-#include "integrators/special/r_respa.hpp"
 #include "integrators/special/verlet.hpp"
-#include "integrators/structural/generalised_alpha.hpp"
-#include "integrators/structural/hht_alpha.hpp"
-#include "integrators/structural/newmark.hpp"
 #include "integrators/tableau/additive_runge_kutta.hpp"
 #include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
 #include "integrators/tableau/explicit_runge_kutta.hpp"
@@ -43,44 +36,19 @@ namespace fw::catalog {
 namespace {
 
 /// Options of a scheme that can choose its own steps.
-const std::vector<OptionInfo> controller_options = {
-    {"controller", "pi", "i, pi or pid (how steps follow from error estimates)"},
-    {"norm", "rms", "rms or max (how the error vector becomes a number)"},
-    {"safety", "0.9", "factor of the predicted step"}};
-
-integrators::ControllerOptions read_controller(const MethodOptions& options) {
-  using integrators::ControllerKind;
-  using integrators::ErrorNorm;
-  integrators::ControllerOptions chosen;
-  chosen.kind = choose<ControllerKind>(options, "controller", chosen.kind,
-                                       {{"i", ControllerKind::integral},
-                                        {"pi", ControllerKind::proportional_integral},
-                                        {"pid", ControllerKind::proportional_integral_derivative}});
-  chosen.norm = choose<ErrorNorm>(options, "norm", chosen.norm,
-                                  {{"rms", ErrorNorm::root_mean_square}, {"max", ErrorNorm::maximum}});
-  chosen.safety = positive_number(options, "safety", chosen.safety);
-  return chosen;
-}
-
-bool has_embedded_solution(const schemes::ButcherTableau& tableau) {
-  return !tableau.b_embedded.empty();
-}
-bool has_embedded_solution(const schemes::RosenbrockTableau& tableau) {
-  return !tableau.b_embedded.empty();
-}
-bool has_embedded_solution(const schemes::NystromTableau& tableau) {
-  return !tableau.b_velocity_embedded.empty();
-}
-bool has_embedded_solution(const schemes::AdditiveTableau& tableau) {
-  return !tableau.explicit_part.b_embedded.empty();
+const std::vector<OptionInfo>& controller_options() {
+  static const std::vector<OptionInfo> list = declared_options<integrators::ControllerOptions>();
+  return list;
 }
 
 /// A scheme given by data, with the controller's options where it has an error estimate. The data outlive the
 /// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
-  return {data.name, has_embedded_solution(data) ? controller_options : std::vector<OptionInfo>{}, data,
-          [&data, make](const MethodOptions& options) { return make(data, read_controller(options)); }};
+  return {data.name, data.has_embedded_solution() ? controller_options() : std::vector<OptionInfo>{},
+          of_coefficients(data), [&data, make](const MethodOptions& options) {
+            return make(data, read_options<integrators::ControllerOptions>(options));
+          }};
 }
 
 linalg::LinearSolverOptions read_linear_solver_options(const MethodOptions& options) {
@@ -97,118 +65,113 @@ linalg::LinearSolverOptions read_linear_solver_options(const MethodOptions& opti
   return checked("petsc", name + " " + text(options, "petsc"));
 }
 
+/// A method whose options are read into a struct, from which both its code and its theory are made.
+template <class Read, class Make, class Theory>
+MethodEntry of_options(std::string name, std::vector<OptionInfo> options, Read read, Make make,
+                       Theory theory) {
+  return {std::move(name), std::move(options),
+          [read, theory](const MethodOptions& given) { return theory(read(given)); },
+          [read, make](const MethodOptions& given) { return make(read(given)); }};
+}
+
+/// Schemes of ours that theory tells as another one, on linear systems at least.
+analysis::Theory implicit_midpoint_on_linear_systems() {
+  return analysis::theory_on_linear_systems(
+      {named(schemes::diagonally_implicit_tableaus(), "implicit_midpoint")});
+}
+analysis::Theory exact_on_linear_systems() {
+  return analysis::theory_on_linear_systems({.rule = analysis::LinearRule::exact});
+}
+/// Of Verlet's two-step form, which is velocity Verlet where forces do not depend on velocity.
+analysis::Theory verlet_theory(analysis::LinearRule rule) {
+  return {.on_position_forces = named(schemes::splitting_schemes(), "velocity_verlet"),
+          .on_linear_systems = {.rule = rule}};
+}
+/// Of Newmark's scheme and its relatives.
+template <class Options>
+analysis::Theory alpha_theory(const Options& options) {
+  return analysis::theory_on_linear_systems(
+      {.rule = analysis::LinearRule::alpha_family, .alpha = integrators::alpha_parameters(options)});
+}
+
 MethodEntry linearised_implicit_euler() {
   using integrators::LinearisedOptions;
-  return {integrators::make_implicit_euler_linearised({})->info().name,
-          {{"linear_solver", "cg", linalg::linear_solver_names()},
-           {"linear_tolerance", "1e-10", "relative residual of iterative solvers"},
-           {"petsc", "", "options of the linear solver petsc, such as -ksp_type cg -pc_type gamg"},
-           {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
-          {},
-          [](const MethodOptions& options) {
-            LinearisedOptions chosen;
-            chosen.linear_solver = read_linear_solver_options(options);
-            chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
-            chosen.tangent =
-                choose<TangentModel>(options, "tangent", TangentModel::exact,
-                                     {{"exact", TangentModel::exact},
-                                      {"tensile_geometric_term", TangentModel::tensile_geometric_term},
-                                      {"psd_projection", TangentModel::psd_projection}});
-            return integrators::make_implicit_euler_linearised(chosen);
-          }};
+  const auto read = [](const MethodOptions& options) {
+    LinearisedOptions chosen;
+    chosen.linear_solver = read_linear_solver_options(options);
+    chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
+    chosen.tangent = choose<TangentModel>(options, "tangent", chosen.tangent,
+                                          {{"exact", TangentModel::exact},
+                                           {"tensile_geometric_term", TangentModel::tensile_geometric_term},
+                                           {"psd_projection", TangentModel::psd_projection}});
+    return chosen;
+  };
+  // Newton's first iteration with the exact tangent is the solution where forces are linear.
+  const auto theory = [](const LinearisedOptions& chosen) {
+    if (chosen.tangent != TangentModel::exact) return analysis::Theory{};
+    return analysis::theory_on_linear_systems(
+        {named(schemes::diagonally_implicit_tableaus(), "implicit_euler")});
+  };
+  return of_options(integrators::make_implicit_euler_linearised({})->info().name,
+                    {{"linear_solver", "cg", linalg::linear_solver_names()},
+                     {"linear_tolerance", "1e-10", "relative residual of iterative solvers"},
+                     {"petsc", "", "options of the linear solver petsc, such as -ksp_type cg -pc_type gamg"},
+                     {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
+                    read, integrators::make_implicit_euler_linearised, theory);
 }
 
 MethodEntry runge_kutta_chebyshev(int order) {
-  const integrators::RungeKuttaChebyshevOptions defaults{.order = order};
-  return {fmt::format("rkc{}", order),
-          {{"stages", fmt::format("{}", defaults.stages),
-            "number of stages, or auto (from the step and the spectral radius of J)"}},
-          schemes::chebyshev_tableau(order, defaults.stages),
-          [defaults](const MethodOptions& options) {
-            integrators::RungeKuttaChebyshevOptions chosen = defaults;
-            const auto option = options.find("stages");
-            if (option != options.end()) {
-              const bool automatic = option->second == "auto";
-              chosen.stages = automatic ? 0
-                                        : whole_number(option->first, option->second,
-                                                       integrators::fewest_chebyshev_stages,
-                                                       integrators::most_chebyshev_stages, " or auto");
-            }
-            return integrators::make_runge_kutta_chebyshev(chosen);
-          }};
+  using integrators::RungeKuttaChebyshevOptions;
+  const RungeKuttaChebyshevOptions defaults{.order = order};
+  const auto read = [defaults](const MethodOptions& options) {
+    RungeKuttaChebyshevOptions chosen = defaults;
+    const auto option = options.find("stages");
+    if (option != options.end()) {
+      const bool automatic = option->second == "auto";
+      chosen.stages = automatic
+                          ? 0
+                          : whole_number(option->first, option->second, integrators::fewest_chebyshev_stages,
+                                         integrators::most_chebyshev_stages, " or auto");
+    }
+    return chosen;
+  };
+  const auto theory = [](const RungeKuttaChebyshevOptions& chosen) {
+    if (chosen.stages == 0) return analysis::Theory{};  // another scheme at every step
+    return analysis::theory_of(schemes::chebyshev_tableau(chosen.order, chosen.stages));
+  };
+  return of_options(fmt::format("rkc{}", order),
+                    {{"stages", fmt::format("{}", defaults.stages),
+                      "number of stages, or auto (from the step and the spectral radius of J)"}},
+                    read, integrators::make_runge_kutta_chebyshev, theory);
+}
+
+/// A scheme with declared options, from which both its code and its theory are made.
+template <class Options, class Theory>
+MethodEntry with_options(std::unique_ptr<Integrator> (*make)(const Options&), Theory theory) {
+  return of_options(
+      make({})->info().name, declared_options<Options>(),
+      [](const MethodOptions& options) { return read_options<Options>(options); }, make, theory);
 }
 
 /// Structural dynamics, energy–momentum, exponential, graphics and multirate schemes.
 std::vector<MethodEntry> specialised_schemes() {
   using namespace integrators;
   std::vector<MethodEntry> list;
-  list.push_back({make_newmark()->info().name,
-                  {{"beta", "0.25", "0 (central differences) to 0.5; 0.25 is average acceleration"},
-                   {"gamma", "0.5", "0.5 (order 2) to 1 (numerical damping)"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_newmark(
-                        {.beta = number(options, "beta", 0.25), .gamma = number(options, "gamma", 0.5)});
-                  }});
-  list.push_back({make_hht_alpha()->info().name,
-                  {{"alpha", "-0.1", "-1/3 to 0, as in the original paper; 0: no numerical damping"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_hht_alpha({.alpha = number(options, "alpha", -0.1)});
-                  }});
-  list.push_back({make_generalised_alpha()->info().name,
-                  {{"rho_infinity", "0.8", "spectral radius at infinite frequency, 0 to 1"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_generalised_alpha({.rho_infinity = number(options, "rho_infinity", 0.8)});
-                  }});
-  list.push_back({make_average_vector_field()->info().name,
-                  {{"quadrature_points", "4", "Gauss points, 1 to 8"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_average_vector_field(
-                        {.quadrature_points = count(options, "quadrature_points", 4)});
-                  }});
-  list.push_back(plain(make_discrete_gradient));
-  list.push_back({make_exponential_rosenbrock_euler()->info().name,
-                  {{"krylov_tolerance", "1e-12", "of a phi function, relative to the state"},
-                   {"krylov_dimension", "200", "largest dimension of the Krylov space"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_exponential_rosenbrock_euler(
-                        {.krylov_tolerance = number(options, "krylov_tolerance", 1e-12),
-                         .krylov_dimension = count(options, "krylov_dimension", 200)});
-                  }});
-  list.push_back({make_gautschi()->info().name,
-                  {{"filter", "gautschi", "gautschi, deuflhard or mollified_impulse"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_gautschi(
-                        {.filter = choose<TrigonometricFilter>(
-                             options, "filter", TrigonometricFilter::gautschi,
-                             {{"gautschi", TrigonometricFilter::gautschi},
-                              {"deuflhard", TrigonometricFilter::deuflhard},
-                              {"mollified_impulse", TrigonometricFilter::mollified_impulse}})});
-                  }});
-  list.push_back({make_r_respa()->info().name,
-                  {{"inner_steps", "10", "steps of the stiff forces per step"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_r_respa({.inner_steps = count(options, "inner_steps", 10)});
-                  }});
-  list.push_back({make_projective_dynamics()->info().name,
-                  {{"iterations", "10", "local-global iterations per step"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_projective_dynamics({.iterations = count(options, "iterations", 10)});
-                  }});
-  list.push_back({make_xpbd()->info().name,
-                  {{"substeps", "10", "substeps per step"}, {"iterations", "1", "sweeps per substep"}},
-                  {},
-                  [](const MethodOptions& options) {
-                    return make_xpbd({.substeps = count(options, "substeps", 10),
-                                      .iterations = count(options, "iterations", 1)});
-                  }});
+  // The averaged force of linear ones is that of the midpoint, with any number of points.
+  const auto midpoint = [](const auto&) { return implicit_midpoint_on_linear_systems(); };
+  const auto exact = [](const auto&) { return exact_on_linear_systems(); };
+  const auto none = [](const auto&) { return analysis::Theory{}; };
+  list.push_back(with_options<NewmarkOptions>(make_newmark, alpha_theory<NewmarkOptions>));
+  list.push_back(with_options<HhtAlphaOptions>(make_hht_alpha, alpha_theory<HhtAlphaOptions>));
+  list.push_back(
+      with_options<GeneralisedAlphaOptions>(make_generalised_alpha, alpha_theory<GeneralisedAlphaOptions>));
+  list.push_back(with_options<AverageVectorFieldOptions>(make_average_vector_field, midpoint));
+  list.push_back(plain(make_discrete_gradient, implicit_midpoint_on_linear_systems()));
+  list.push_back(with_options<ExponentialOptions>(make_exponential_rosenbrock_euler, exact));
+  list.push_back(with_options<GautschiOptions>(make_gautschi, exact));
+  list.push_back(with_options<RespaOptions>(make_r_respa, none));
+  list.push_back(with_options<ProjectiveDynamicsOptions>(make_projective_dynamics, none));
+  list.push_back(with_options<XpbdOptions>(make_xpbd, none));
   return list;
 }
 
@@ -221,14 +184,19 @@ std::vector<MethodEntry> make_list() {
     list.push_back(with_controller(tableau, integrators::make_nystrom));
   }
   for (const schemes::SplittingScheme& scheme : schemes::splitting_schemes()) {
-    list.push_back({scheme.name, {}, scheme, [&scheme](const MethodOptions&) {
+    list.push_back({scheme.name, {}, of_coefficients(scheme), [&scheme](const MethodOptions&) {
                       return integrators::make_splitting(scheme);
                     }});
   }
   list.push_back(runge_kutta_chebyshev(1));
   list.push_back(runge_kutta_chebyshev(2));
-  list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::central); }));
-  list.push_back(plain([] { return integrators::make_verlet(integrators::VerletVelocity::backward); }));
+  using analysis::LinearRule;
+  using integrators::VerletVelocity;
+  analysis::Theory verlet = verlet_theory(LinearRule::verlet_central_velocity);
+  verlet.modified_energy = analysis::velocity_verlet_energy;  // its velocity is velocity Verlet's
+  list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::central); }, std::move(verlet)));
+  list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::backward); },
+                       verlet_theory(LinearRule::verlet_backward_velocity)));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
@@ -236,12 +204,12 @@ std::vector<MethodEntry> make_list() {
         }));
   }
   for (const schemes::ButcherTableau& tableau : schemes::fully_implicit_tableaus()) {
-    list.push_back({tableau.name, {}, tableau, [&tableau](const MethodOptions&) {
+    list.push_back({tableau.name, {}, of_coefficients(tableau), [&tableau](const MethodOptions&) {
                       return integrators::make_fully_implicit_runge_kutta(tableau);
                     }});
   }
   for (const schemes::NystromTableau& tableau : schemes::implicit_nystrom_tableaus()) {
-    list.push_back({tableau.name, {}, tableau, [&tableau](const MethodOptions&) {
+    list.push_back({tableau.name, {}, of_coefficients(tableau), [&tableau](const MethodOptions&) {
                       return integrators::make_implicit_nystrom(tableau);
                     }});
   }
@@ -256,7 +224,7 @@ std::vector<MethodEntry> make_list() {
   }
   list.push_back(linearised_implicit_euler());
   for (const schemes::MultistepFormula& formula : schemes::multistep_formulas()) {
-    list.push_back({formula.name, {}, formula, [&formula](const MethodOptions&) {
+    list.push_back({formula.name, {}, of_coefficients(formula), [&formula](const MethodOptions&) {
                       return integrators::make_linear_multistep(formula);
                     }});
   }
@@ -284,11 +252,12 @@ const MethodEntry& find_method(const std::string& name) {
                                did_you_mean(name, names)));
 }
 
-std::unique_ptr<Integrator> make_method(const std::string& text) {
-  return make_method(parse_method_call(text));
-}
+namespace {
 
-std::unique_ptr<Integrator> make_method(const MethodCall& call) {
+/// What `make` makes of the entry of a call. Throws InputError for an option that the method does not take,
+/// and names the method where a value is refused.
+template <class Make>
+auto with_checked_options(const MethodCall& call, Make make) {
   const MethodEntry& entry = find_method(call.name);
   for (const auto& [name, value] : call.options) {
     const bool known = std::any_of(entry.options.begin(), entry.options.end(),
@@ -303,21 +272,25 @@ std::unique_ptr<Integrator> make_method(const MethodCall& call) {
     }
   }
   try {
-    return entry.make(call.options);
+    return make(entry);
   } catch (const InputError& error) {
     throw InputError(fmt::format("method \"{}\": {}", call.name, error.what()));
   }
 }
 
-schemes::SchemeData scheme_of(const std::string& text) {
+}  // namespace
+
+std::unique_ptr<Integrator> make_method(const std::string& text) {
+  return make_method(parse_method_call(text));
+}
+
+std::unique_ptr<Integrator> make_method(const MethodCall& call) {
+  return with_checked_options(call, [&](const MethodEntry& entry) { return entry.make(call.options); });
+}
+
+analysis::Theory theory_of_call(const std::string& text) {
   const MethodCall call = parse_method_call(text);
-  const auto is_of_controller = [](const auto& option) {
-    return std::any_of(controller_options.begin(), controller_options.end(),
-                       [&](const OptionInfo& known) { return known.name == option.first; });
-  };
-  const MethodEntry& entry = find_method(call.name);
-  if (!std::all_of(call.options.begin(), call.options.end(), is_of_controller)) return {};
-  return entry.data;
+  return with_checked_options(call, [&](const MethodEntry& entry) { return entry.theory(call.options); });
 }
 
 }  // namespace fw::catalog

@@ -1,28 +1,35 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "analysis/theory/method_theory.hpp"
 #include "catalog/method_call.hpp"
 #include "ode/integrator.hpp"
-#include "schemes/scheme_data.hpp"
 
 namespace fw::catalog {
 
-/// One line of the list of methods.
+/// What theory says of a method with the options of a call; an empty function: nothing.
+using TheoryOfOptions = std::function<analysis::Theory(const MethodOptions&)>;
+
+/// One line of the list of methods: its code and its theory, both made with the options of a call.
 class MethodEntry {
  public:
   using Make = std::function<std::unique_ptr<Integrator>(const MethodOptions&)>;
 
-  MethodEntry(std::string method_name, std::vector<OptionInfo> method_options,
-              schemes::SchemeData scheme_data, Make make_method)
+  MethodEntry(std::string method_name, std::vector<OptionInfo> method_options, TheoryOfOptions method_theory,
+              Make make_method)
       : name(std::move(method_name)),
         options(std::move(method_options)),
-        data(std::move(scheme_data)),
         make(std::move(make_method)),
+        theory_(std::move(method_theory)),
         lazy_(std::make_shared<Lazy>()) {}
 
   /// What is known of the method with its default options. Derived when it is first asked for, since the
@@ -32,9 +39,13 @@ class MethodEntry {
     return lazy_->info;
   }
 
+  /// What theory says of it with these options. Throws InputError for a bad option value.
+  analysis::Theory theory(const MethodOptions& given) const {
+    return theory_ ? theory_(given) : analysis::Theory{};
+  }
+
   std::string name;
   std::vector<OptionInfo> options;
-  schemes::SchemeData data;  ///< the coefficients that define it, if it is defined so
   /// Makes the integrator. Throws InputError for a bad option value; unknown options are checked before.
   Make make;
 
@@ -43,12 +54,32 @@ class MethodEntry {
     std::once_flag once;
     MethodInfo info;
   };
+  TheoryOfOptions theory_;
   std::shared_ptr<Lazy> lazy_;
 };
 
 /// A method without options.
-inline MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make) {
-  return {make()->info().name, {}, {}, [make = std::move(make)](const MethodOptions&) { return make(); }};
+inline MethodEntry plain(std::function<std::unique_ptr<Integrator>()> make, analysis::Theory theory = {}) {
+  return {make()->info().name,
+          {},
+          [theory = std::move(theory)](const MethodOptions&) { return theory; },
+          [make = std::move(make)](const MethodOptions&) { return make(); }};
+}
+
+/// The theory of a method that is its coefficients, whatever its options; the data outlive the list.
+template <class Data>
+TheoryOfOptions of_coefficients(const Data& data) {
+  return [&data](const MethodOptions&) { return analysis::theory_of(data); };
+}
+
+/// The coefficients of that name in a list, for the theory of a method that coincides with it. Throws
+/// std::logic_error where there is none.
+template <class Data>
+const Data& named(const std::vector<Data>& list, std::string_view name) {
+  for (const Data& data : list) {
+    if (data.name == name) return data;
+  }
+  throw std::logic_error(fmt::format("no coefficients are called \"{}\"", name));
 }
 
 /// Every method, hand-written ones first, then the oracles. The only place where one is registered.
@@ -61,8 +92,7 @@ const MethodEntry& find_method(const std::string& name);
 std::unique_ptr<Integrator> make_method(const std::string& call);
 std::unique_ptr<Integrator> make_method(const MethodCall& call);
 
-/// The coefficients behind a call; std::monostate where there are none, or where an option may change the
-/// scheme (those of a step size controller do not).
-schemes::SchemeData scheme_of(const std::string& call);
+/// What theory says of a call. Throws InputError for an unknown method, option or value.
+analysis::Theory theory_of_call(const std::string& call);
 
 }  // namespace fw::catalog

@@ -1,6 +1,11 @@
+#include <map>
+
 #include "catalog/method_options.hpp"
 #include "catalog/oracle_methods.hpp"
 #include "oracles/petsc/time_steppers.hpp"
+#include "schemes/explicit_tableaus.hpp"
+#include "schemes/implicit_tableaus.hpp"
+#include "schemes/splitting_schemes.hpp"
 
 namespace fw::catalog {
 
@@ -25,11 +30,32 @@ bool yes_or_no(const MethodOptions& options, const std::string& name) {
   return choose<bool>(options, name, false, {{"yes", true}, {"no", false}});
 }
 
+/// What PETSc's manual says of a type [Abhyankar et al. 2018]; nothing where options in PETSc's notation may
+/// choose another one.
+analysis::Theory known_as(const MethodOptions& options, schemes::SchemeData data) {
+  if (!text(options, "petsc").empty()) return {};
+  return analysis::theory_on_linear_systems({std::move(data)});
+}
+
+/// The table of a type of ts_rk.
+schemes::SchemeData rk_table(const std::string& type) {
+  static const std::map<std::string, const char*> names = {{"1fe", "explicit_euler"},
+                                                           {"3bs", "bogacki_shampine_32"},
+                                                           {"4", "rk4"},
+                                                           {"5f", "fehlberg_54"},
+                                                           {"5dp", "dormand_prince_54"}};
+  const auto name = names.find(type);
+  if (name == names.end()) return {};
+  return named(schemes::explicit_tableaus(), name->second);
+}
+
 MethodEntry ts_rk() {
   const TsRkOptions defaults;
   return {make_ts_rk()->info().name,
           {type_option(defaults.type, ts_rk_types()), petsc_option},
-          {},
+          [defaults](const MethodOptions& options) {
+            return known_as(options, rk_table(type_of(options, defaults.type)));
+          },
           [defaults](const MethodOptions& options) {
             return make_ts_rk({.type = type_of(options, defaults.type), .petsc = text(options, "petsc")});
           }};
@@ -41,7 +67,16 @@ MethodEntry ts_theta() {
           {{"theta", "0.5", "0 < theta <= 1; 1: implicit Euler"},
            {"endpoint", "no", "yes or no; yes: the trapezoidal family"},
            petsc_option},
-          {},
+          [defaults](const MethodOptions& options) {
+            const double theta = number(options, "theta", defaults.theta);
+            const bool endpoint = yes_or_no(options, "endpoint");
+            const char* name = theta == 1.0   ? "implicit_euler"
+                               : theta != 0.5 ? ""
+                               : endpoint     ? "trapezoidal"
+                                              : "implicit_midpoint";
+            if (*name == '\0') return analysis::Theory{};
+            return known_as(options, named(schemes::diagonally_implicit_tableaus(), name));
+          },
           [defaults](const MethodOptions& options) {
             return make_ts_theta({.theta = number(options, "theta", defaults.theta),
                                   .endpoint = yes_or_no(options, "endpoint"),
@@ -104,7 +139,10 @@ MethodEntry ts_basicsymplectic() {
   const TsBasicSymplecticOptions defaults;
   return {make_ts_basicsymplectic()->info().name,
           {{"order", fmt::format("{}", defaults.order), "1 to 4"}, petsc_option},
-          {},
+          [defaults](const MethodOptions& options) {
+            if (count(options, "order", defaults.order) != 2) return analysis::Theory{};
+            return known_as(options, named(schemes::splitting_schemes(), "velocity_verlet"));
+          },
           [defaults](const MethodOptions& options) {
             return make_ts_basicsymplectic(
                 {.order = count(options, "order", defaults.order), .petsc = text(options, "petsc")});

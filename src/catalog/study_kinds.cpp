@@ -11,6 +11,7 @@
 #include "study/propagation/propagation.hpp"
 #include "study/stability/stability.hpp"
 #include "study/stiffness/stiffness.hpp"
+#include "study/verification/verify.hpp"
 #include "study/work_precision/work_precision.hpp"
 
 namespace fw::catalog {
@@ -22,7 +23,7 @@ std::vector<study::StudyKind> plain_kinds() {
   return {study::convergence_kind(),   study::agreement_kind(),      study::stability_kind(),
           study::stiffness_kind(),     study::work_precision_kind(), study::energy_kind(),
           study::dissipation_kind(),   study::propagation_kind(),    study::jacobian_kind(),
-          study::linear_solver_kind(), study::simulate_kind()};
+          study::linear_solver_kind(), study::simulate_kind(),       study::verify_kind()};
 }
 
 std::vector<study::StudyKind> all_kinds() {

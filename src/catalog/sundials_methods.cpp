@@ -21,8 +21,12 @@ oracles::CvodeOptions cvode_options(CvodeFormula formula, const MethodOptions& o
   }
   chosen.linear_solver = choose(options, "linear_solver", chosen.linear_solver,
                                 {{"klu", CvodeLinearSolver::klu}, {"spgmr", CvodeLinearSolver::spgmr}});
-  chosen.krylov_dimension = count(options, "krylov_dimension", chosen.krylov_dimension);
-  chosen.maximum_order = count(options, "max_order", chosen.maximum_order);
+  const auto whole = [&options](const std::string& name, int least, int most, int fallback) {
+    const auto option = options.find(name);
+    return option == options.end() ? fallback : whole_number(name, option->second, least, most);
+  };
+  chosen.krylov_dimension = whole("krylov_dimension", 1, 10'000, chosen.krylov_dimension);
+  chosen.maximum_order = whole("max_order", 1, formula == CvodeFormula::bdf ? 5 : 12, chosen.maximum_order);
   chosen.vector = choose(options, "vector", chosen.vector,
                          {{"eigen", VectorOperations::eigen}, {"serial", VectorOperations::serial}});
   if (formula == CvodeFormula::bdf) {

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
+
+#include "dense/eigenvalues.hpp"
+#include "dense/factorisations.hpp"
 
 namespace fw::constraints {
 
@@ -41,7 +42,7 @@ Status check_independence(const SecondOrderSystem& system, const DistanceConstra
   };
   if (!scale.allFinite()) return singular((A.diagonal().array() > 0.0).count());
   A = scale.asDiagonal() * A * scale.asDiagonal();
-  const Vector eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector eigenvalues = dense::symmetric_eigenvalues(A);
   const Index rank = (eigenvalues.array() > smallest_eigenvalue * eigenvalues.maxCoeff()).count();
   return rank == constraints.size() ? Status{} : singular(rank);
 }
@@ -54,7 +55,7 @@ Vector multipliers(const SecondOrderSystem& system, const DistanceConstraints& c
   Vector right(constraints.size()), curvature(constraints.size());
   constraints.product(q, acceleration, right);
   constraints.product(v, v, curvature);
-  return -constraint_matrix(system, constraints, q).ldlt().solve(right + curvature);
+  return -dense::solve_ldlt(constraint_matrix(system, constraints, q), right + curvature);
 }
 
 Status project_on_constraints(const SecondOrderSystem& system, const DistanceConstraints& constraints,
@@ -64,7 +65,8 @@ Status project_on_constraints(const SecondOrderSystem& system, const DistanceCon
   Vector g(constraints.size()), impulse(q.size());
   const auto move = [&](VectorRef target) {
     impulse.setZero();
-    constraints.add_transposed_product(q, constraint_matrix(system, constraints, q).ldlt().solve(g), impulse);
+    constraints.add_transposed_product(q, dense::solve_ldlt(constraint_matrix(system, constraints, q), g),
+                                       impulse);
     target -= impulse.cwiseQuotient(system.mass());
   };
   double before = std::numeric_limits<double>::infinity();

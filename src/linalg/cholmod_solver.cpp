@@ -39,7 +39,7 @@ cholmod_sparse CholmodSolver::view() {
 }
 
 Status CholmodSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) cholmod_free_factor(&factor_, &common_);
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   cholmod_sparse sparse = view();
@@ -58,6 +58,14 @@ Status CholmodSolver::factorise(const SparseMatrix& A, Work& work) {
     return {StatusCode::library_failure, fmt::format("CHOLMOD failed with status {}", common_.status)};
   }
   return {};
+}
+
+void CholmodSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  factorise(matrix, not_counted);
 }
 
 LinearSolve CholmodSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

@@ -7,7 +7,8 @@
 namespace fw::linalg {
 
 /// Supernodal LLᵀ of a symmetric positive definite matrix by CHOLMOD on dense kernels of the BLAS
-/// [Chen, Davis, Hager, Rajamanickam 2008]; the lower triangle is read. The ordering is made once.
+/// [Chen, Davis, Hager, Rajamanickam 2008]; the lower triangle is read. The ordering is made once for a
+/// pattern.
 class CholmodSolver final : public LinearSolver {
  public:
   CholmodSolver();
@@ -18,6 +19,9 @@ class CholmodSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  /// Each factorisation is made from its matrix alone.
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   cholmod_sparse view();  ///< of `matrix_`, without a copy
@@ -25,7 +29,6 @@ class CholmodSolver final : public LinearSolver {
   cholmod_common common_;
   cholmod_factor* factor_ = nullptr;
   cholmod_dense *solution_ = nullptr, *work_y_ = nullptr, *work_e_ = nullptr;
-  SparseMatrix matrix_;
   Vector residual_;
 };
 

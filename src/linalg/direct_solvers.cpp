@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/error.hpp"
 #include "linalg/true_residual.hpp"
 
 namespace fw::linalg {
@@ -32,12 +33,12 @@ struct Failure<Eigen::SparseLU<SparseMatrix, Ordering>> {
 
 template <class Factorisation>
 Status EigenDirectSolver<Factorisation>::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) is_analysed_ = false;
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
-  if (!analysed_) {
+  if (!is_analysed_) {
     factorisation_.analyzePattern(matrix_);
-    analysed_ = true;
+    is_analysed_ = true;
   }
   factorisation_.factorize(matrix_);
   return factorisation_.info() == Eigen::Success ? Status{} : Failure<Factorisation>::status();
@@ -48,6 +49,16 @@ LinearSolve EigenDirectSolver<Factorisation>::solve(ConstVectorRef b, VectorRef 
   x = factorisation_.solve(b);
   ++work.linear_solves;
   return judge_solution(matrix_, b, x, largest_direct_residual, residual_);
+}
+
+template <class Factorisation>
+void EigenDirectSolver<Factorisation>::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  is_analysed_ = false;
+  factorise(matrix, not_counted);
 }
 
 template class EigenDirectSolver<Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>>;
@@ -64,7 +75,10 @@ SparseLuSolver::~SparseLuSolver() {
 }
 
 Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  if (take_matrix(A)) {
+    klu_free_numeric(&numeric_, &common_);
+    klu_free_symbolic(&symbolic_, &common_);
+  }
   ++work.factorisations;
   int* outer = matrix_.outerIndexPtr();
   int* inner = matrix_.innerIndexPtr();
@@ -83,10 +97,13 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
     const double poor_pivots = 1e-12;
     if (klu_refactor(outer, inner, values, symbolic_, numeric_, &common_) == 1 && common_.status == KLU_OK &&
         klu_rcond(symbolic_, numeric_, &common_) == 1 && common_.rcond > poor_pivots) {
+      keeps_old_pivots_ = true;
       return {};
     }
     klu_free_numeric(&numeric_, &common_);
   }
+  pivot_values_ = ConstVectorMap(values, matrix_.nonZeros());
+  keeps_old_pivots_ = false;
   numeric_ = klu_factor(outer, inner, values, symbolic_, &common_);
   if (numeric_ == nullptr || common_.status != KLU_OK) {
     klu_free_numeric(&numeric_, &common_);
@@ -94,6 +111,34 @@ Status SparseLuSolver::factorise(const SparseMatrix& A, Work& work) {
             fmt::format("KLU met a zero pivot in column {}: the matrix is singular", common_.singular_col)};
   }
   return {};
+}
+
+void SparseLuSolver::forget() {
+  klu_free_numeric(&numeric_, &common_);
+}
+
+void SparseLuSolver::serialise(StateArchive& archive) {
+  bool has_factors = numeric_ != nullptr;
+  archive.visit("has factors", has_factors);
+  archive.visit("keeps old pivots", keeps_old_pivots_);
+  archive.visit("matrix", matrix_);
+  if (archive.is_loading()) pivot_values_.resize(has_factors ? matrix_.nonZeros() : 0);
+  if (has_factors) archive.visit("matrix of the pivots", pivot_values_);
+  if (!archive.is_loading()) return;
+  klu_free_numeric(&numeric_, &common_);
+  klu_free_symbolic(&symbolic_, &common_);
+  if (!has_factors) return;
+  // Pivots come from the matrix that they were chosen for, factors from the last one.
+  Work not_counted;
+  const bool keeps_old_pivots = keeps_old_pivots_;
+  const SparseMatrix last = matrix_;
+  SparseMatrix first = matrix_;
+  VectorMap(first.valuePtr(), first.nonZeros()) = pivot_values_;
+  Status status = factorise(first, not_counted);
+  if (status.ok() && keeps_old_pivots) status = factorise(last, not_counted);
+  if (!status.ok() || keeps_old_pivots != keeps_old_pivots_) {
+    throw InputError("saved state: the factors of a matrix cannot be made again from what was saved");
+  }
 }
 
 LinearSolve SparseLuSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

@@ -9,7 +9,7 @@
 
 namespace fw::linalg {
 
-/// One of Eigen's sparse factorisations. The pattern is analysed once; Eigen allocates work space inside each
+/// One of Eigen's sparse factorisations. A pattern is analysed once; Eigen allocates work space inside each
 /// numerical factorisation.
 template <class Factorisation>
 class EigenDirectSolver final : public LinearSolver {
@@ -17,12 +17,14 @@ class EigenDirectSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  /// Each factorisation is made from its matrix alone.
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   Factorisation factorisation_;
-  SparseMatrix matrix_;
   Vector residual_;
-  bool analysed_ = false;
+  bool is_analysed_ = false;
 };
 
 /// LLᵀ of a symmetric positive definite matrix, of which the lower triangle is read.
@@ -35,8 +37,8 @@ using SparseLdltSolver =
 /// LU of any regular matrix by supernodes.
 using EigenSparseLuSolver = EigenDirectSolver<Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>>;
 
-/// P A Q = L U by KLU. The ordering is made once; later matrices are refactorised with the same pivots while
-/// these stay good (reciprocal condition estimate), and pivoted anew otherwise.
+/// P A Q = L U by KLU. The ordering is made once for a pattern; later matrices are refactorised with the same
+/// pivots while these stay good (reciprocal condition estimate), and pivoted anew otherwise.
 class SparseLuSolver final : public LinearSolver {
  public:
   SparseLuSolver();
@@ -47,12 +49,15 @@ class SparseLuSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override { return factorise(A, work); }
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override;
+  void serialise(StateArchive& archive) override;
 
  private:
   klu_common common_;
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
-  SparseMatrix matrix_;
+  Vector pivot_values_;            ///< of the matrix from which the pivots were chosen
+  bool keeps_old_pivots_ = false;  ///< the factors are of a later matrix than the pivots
   Vector residual_;
 };
 

@@ -5,30 +5,33 @@
 #include <Eigen/Cholesky>
 
 #include "linalg/true_residual.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::linalg {
 
 namespace {
 
 using Block = Eigen::Matrix3d;
-using BlockMap = Eigen::Map<const Block>;
+using BlockMap = sparse::BlockMatrix3::Block;
 
 }  // namespace
 
 Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;  // the pattern is the same from the second call on: Eigen reuses the storage
   const Index n = A.cols();
   block_size_ = n % 3 == 0 ? 3 : 1;
-  inverse_blocks_.resize(static_cast<std::size_t>(n * block_size_));
+  if (take_matrix(A)) {
+    inverse_blocks_.resize(static_cast<std::size_t>(n * block_size_));
+    if (block_size_ == 3) blocks_ = sparse::BlockMatrix3(matrix_);
+  }
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
+  if (block_size_ == 3) blocks_.take_values(matrix_);
   for (Index first = 0; first < n; first += block_size_) {
     Block block = Block::Identity();
-    for (Index column = 0; column < block_size_; ++column) {
-      for (SparseMatrix::InnerIterator entry(A, first + column); entry; ++entry) {
-        const Index row = entry.row() - first;
-        if (row >= 0 && row < block_size_) block(row, column) = entry.value();
-      }
+    if (block_size_ == 3) {
+      block = blocks_.diagonal(first / 3);
+    } else {
+      block(0, 0) = matrix_.coeff(first, first);
     }
     const Eigen::LLT<Block> cholesky(block);
     if (cholesky.info() != Eigen::Success) {
@@ -47,9 +50,20 @@ Status ConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
   return {};
 }
 
-Status ConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&) {
-  matrix_ = A;
+Status ConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work& work) {
+  if (!sparse::same_pattern(matrix_, A)) return factorise(A, work);
+  take_matrix(A);
+  if (block_size_ == 3) blocks_.take_values(matrix_);
   return {};
+}
+
+void ConjugateGradientSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  std::uint64_t block_size = static_cast<std::uint64_t>(block_size_);
+  archive.visit("block size", block_size);
+  block_size_ = static_cast<Index>(block_size);
+  if (archive.is_loading()) inverse_blocks_.resize(static_cast<std::size_t>(matrix_.cols()) * block_size);
+  archive.visit("preconditioner", inverse_blocks_);
 }
 
 void ConjugateGradientSolver::precondition(ConstVectorRef r, VectorRef out) const {
@@ -66,7 +80,13 @@ LinearSolve ConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& 
   const std::uint64_t limit =
       options_.max_iterations > 0 ? options_.max_iterations : 10 * static_cast<std::uint64_t>(b.size());
   // A is symmetric: its transpose is stored by rows, so the product gathers instead of scattering.
-  const auto apply = [this](ConstVectorRef p, VectorRef out) { out.noalias() = matrix_.transpose() * p; };
+  const auto apply = [this](ConstVectorRef p, VectorRef out) {
+    if (block_size_ == 3) {
+      blocks_.transposed_product(p, out);
+    } else {
+      out.noalias() = matrix_.transpose() * p;
+    }
+  };
   const auto jacobi = [this](ConstVectorRef r, VectorRef out) { precondition(r, out); };
   LinearSolve result =
       conjugate_gradient(apply, jacobi, b, x, options_.relative_tolerance, limit, workspace_);
@@ -81,20 +101,29 @@ EigenConjugateGradientSolver::EigenConjugateGradientSolver(const LinearSolverOpt
 }
 
 Status EigenConjugateGradientSolver::factorise(const SparseMatrix& A, Work& work) {
-  matrix_ = A;
+  take_matrix(A);
   ++work.factorisations;
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   solver_.compute(matrix_);
   return {};
 }
 
-Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work&) {
-  matrix_ = A;
+Status EigenConjugateGradientSolver::replace_matrix(const SparseMatrix& A, Work& work) {
+  if (!sparse::same_pattern(matrix_, A)) return factorise(A, work);
+  take_matrix(A);
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   solver_.preconditioner().keep = true;
   solver_.compute(matrix_);
   solver_.preconditioner().keep = false;
   return {};
+}
+
+void EigenConjugateGradientSolver::serialise(StateArchive& archive) {
+  archive.visit("matrix", matrix_);
+  if (!archive.is_loading() || matrix_.cols() == 0) return;
+  Work not_counted;
+  const SparseMatrix matrix = matrix_;
+  factorise(matrix, not_counted);
 }
 
 LinearSolve EigenConjugateGradientSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "linalg/linear_solver.hpp"
+#include "sparse/block_matrix3.hpp"
 
 namespace fw::linalg {
 
 /// Conjugate gradients on a stored symmetric matrix with a block-Jacobi preconditioner: 3×3 diagonal blocks
-/// (one per particle) where the size is a multiple of three, else the diagonal. Allocates at the first
-/// factorisation only.
+/// (one per particle) where the size is a multiple of three, else the diagonal. Allocates for a new
+/// pattern only.
 class ConjugateGradientSolver final : public LinearSolver {
  public:
   explicit ConjugateGradientSolver(LinearSolverOptions options) : options_(options) {}
@@ -17,12 +18,14 @@ class ConjugateGradientSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   void precondition(ConstVectorRef r, VectorRef out) const;
 
   LinearSolverOptions options_;
-  SparseMatrix matrix_;
+  sparse::BlockMatrix3 blocks_;         ///< the matrix where blocks are 3×3
   std::vector<double> inverse_blocks_;  ///< column-major blocks, one after the other
   Index block_size_ = 1;
   ConjugateGradientWorkspace workspace_;
@@ -48,10 +51,11 @@ class EigenConjugateGradientSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override {}
+  void serialise(StateArchive& archive) override;
 
  private:
   LinearSolverOptions options_;
-  SparseMatrix matrix_;
   Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper, KeptDiagonal> solver_;
   Vector residual_;
 };

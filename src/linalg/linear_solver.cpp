@@ -9,6 +9,7 @@
 #include "linalg/direct_solvers.hpp"
 #include "linalg/krylov_solvers.hpp"
 #include "linalg/petsc_solver.hpp"
+#include "sparse/sparse_slots.hpp"
 #include "text/closest_name.hpp"
 
 namespace fw::linalg {
@@ -98,6 +99,17 @@ std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& opti
       return std::make_unique<PetscSolver>(options);
   }
   return nullptr;
+}
+
+std::unique_ptr<LinearSolver> default_direct_solver() {
+  return make_linear_solver({.kind = LinearSolverKind::sparse_lu});
+}
+
+bool LinearSolver::take_matrix(const SparseMatrix& A) {
+  const bool is_new = analyses_ == 0 || !sparse::same_pattern(matrix_, A);
+  matrix_ = A;  // an unchanged pattern keeps its storage
+  if (is_new) ++analyses_;
+  return is_new;
 }
 
 }  // namespace fw::linalg

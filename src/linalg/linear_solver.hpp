@@ -4,28 +4,50 @@
 #include <string>
 #include <vector>
 
+#include "core/state_archive.hpp"
 #include "core/work.hpp"
 #include "linalg/conjugate_gradient.hpp"
 
 namespace fw::linalg {
 
-/// A solver of A x = b for sparse A whose pattern stays the same over a run.
+/// A solver of A x = b for sparse A whose values change often over a run and whose pattern changes rarely.
+/// Every solver compares the pattern of a new A with that of the last one: it is analysed (ordering, symbolic
+/// factorisation, storage) at the first matrix and where it has changed, and only then.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Takes the values of A and factorises them, or makes a preconditioner from them; the pattern is analysed
-  /// at the first call only. Failures: matrix_singular (LU), matrix_indefinite (Cholesky, block-Jacobi),
-  /// non_finite.
+  /// Takes the values of A and factorises them, or makes a preconditioner from them. Failures:
+  /// matrix_singular (LU), matrix_indefinite (Cholesky, block-Jacobi), non_finite.
   virtual Status factorise(const SparseMatrix& A, Work& work) = 0;
 
   /// Takes new values of A. An iterative solver keeps the preconditioner of the last `factorise`, a direct
-  /// one factorises anew. `factorise` has succeeded before.
+  /// one factorises anew, and so does any solver for a new pattern. `factorise` has succeeded before.
   virtual Status replace_matrix(const SparseMatrix& A, Work& work) = 0;
 
   /// Solves with the last `A`. `x` is the initial guess of an iterative solver. Every solver reports its true
   /// residual, and one that does not reach the tolerance has failed.
   virtual LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) = 0;
+
+  /// Forgets factors and pivots: the next `factorise` works as the first one did, to the last bit.
+  virtual void forget() = 0;
+
+  /// Visits what makes `solve` and the next `factorise` give the same bits: a reading solver makes its
+  /// factors anew from the matrices saved. Throws InputError for solvers of a library that does not give out
+  /// its memory.
+  virtual void serialise(StateArchive& archive) = 0;
+
+  /// How often a pattern has been analysed.
+  std::uint64_t analyses() const { return analyses_; }
+
+ protected:
+  /// Takes a copy of A; whether its pattern is a new one, which counts as an analysis.
+  bool take_matrix(const SparseMatrix& A);
+
+  SparseMatrix matrix_;  ///< A as it was given last
+
+ private:
+  std::uint64_t analyses_ = 0;
 };
 
 enum class LinearSolverKind {
@@ -84,5 +106,8 @@ std::string linear_solver_names();
 LinearSolverOptions read_linear_solver(const std::string& call);
 
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearSolverOptions& options);
+
+/// The direct solver for any regular sparse matrix that implicit schemes take where nobody chooses: KLU.
+std::unique_ptr<LinearSolver> default_direct_solver();
 
 }  // namespace fw::linalg

@@ -17,8 +17,8 @@ constexpr double rounding_floor = 1e-8;
 
 }  // namespace
 
-Newton::Newton(Index size, LinearSolverKind kind)
-    : solver_(make_linear_solver({.kind = kind})), residual_(size), correction_(size), trial_(size) {}
+Newton::Newton(Index size, std::unique_ptr<LinearSolver> solver)
+    : solver_(std::move(solver)), residual_(size), correction_(size), trial_(size) {}
 
 Status Newton::solve(NewtonProblem& problem, VectorRef u, double scale, Work& work) {
   problem.residual(u, residual_);

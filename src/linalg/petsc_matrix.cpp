@@ -1,6 +1,7 @@
 #include "linalg/petsc_matrix.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace fw::linalg {
 
@@ -58,38 +59,44 @@ PetscMatrix::PetscMatrix(const SparseMatrix& A, PetscMatrixType type)
     : type_(type), block_size_(A.cols() % 3 == 0 ? 3 : 1) {
   const PetscSession session;
   const auto n = static_cast<PetscInt>(A.cols());
-  const bool upper = type == PetscMatrixType::sbaij;
-  const PetscInt stored_block = type == PetscMatrixType::aij ? 1 : block_size_;
-  const RowPattern pattern = row_pattern(A, stored_block, upper);
-  place_ = places(A, pattern, stored_block, upper);
   petsc_check(MatCreate(PETSC_COMM_SELF, matrix_.out()));
   petsc_check(MatSetSizes(matrix_, n, n, n, n));
   petsc_check(MatSetBlockSize(matrix_, block_size_));
-  switch (type) {
+  petsc_check(MatSetType(matrix_, type == PetscMatrixType::aij    ? MATSEQAIJ
+                                  : type == PetscMatrixType::baij ? MATSEQBAIJ
+                                                                  : MATSEQSBAIJ));
+  make_storage(A);
+}
+
+void PetscMatrix::set_pattern(const SparseMatrix& A) {
+  if (type_ != PetscMatrixType::aij) {
+    throw std::logic_error("PETSc's matrices of blocks do not tell of a new pattern: make a new one");
+  }
+  const PetscSession session;
+  make_storage(A);
+}
+
+void PetscMatrix::make_storage(const SparseMatrix& A) {
+  const bool upper = type_ == PetscMatrixType::sbaij;
+  const PetscInt stored_block = type_ == PetscMatrixType::aij ? 1 : block_size_;
+  const RowPattern pattern = row_pattern(A, stored_block, upper);
+  place_ = places(A, pattern, stored_block, upper);
+  petsc_check(MatSetOption(matrix_, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_FALSE));
+  switch (type_) {
     case PetscMatrixType::aij:
-      petsc_check(MatSetType(matrix_, MATSEQAIJ));
       petsc_check(
           MatSeqAIJSetPreallocationCSR(matrix_, pattern.start.data(), pattern.column.data(), nullptr));
       break;
     case PetscMatrixType::baij:
-      petsc_check(MatSetType(matrix_, MATSEQBAIJ));
       petsc_check(MatSeqBAIJSetPreallocationCSR(matrix_, block_size_, pattern.start.data(),
                                                 pattern.column.data(), nullptr));
       break;
     case PetscMatrixType::sbaij:
-      petsc_check(MatSetType(matrix_, MATSEQSBAIJ));
       petsc_check(MatSeqSBAIJSetPreallocationCSR(matrix_, block_size_, pattern.start.data(),
                                                  pattern.column.data(), nullptr));
       break;
   }
   petsc_check(MatSetOption(matrix_, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
-}
-
-bool PetscMatrix::fits(const SparseMatrix& A) const {
-  PetscInt rows = 0;
-  const PetscSession session;
-  petsc_check(MatGetSize(matrix_, &rows, nullptr));
-  return rows == A.cols() && place_.size() == static_cast<std::size_t>(A.nonZeros());
 }
 
 void PetscMatrix::set_values(const SparseMatrix& A) {

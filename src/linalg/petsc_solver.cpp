@@ -11,6 +11,7 @@
 #include "linalg/petsc_matrix.hpp"
 #include "linalg/rigid_body_modes.hpp"
 #include "linalg/true_residual.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::linalg {
 
@@ -89,7 +90,6 @@ class PetscSolver::Engine {
     }
   }
 
-  bool fits(const SparseMatrix& A) const { return matrix_.fits(A); }
   bool is_direct() const { return is_direct_; }
 
   /// New values and a new preconditioner.
@@ -224,13 +224,10 @@ Status PetscSolver::factorise(const SparseMatrix& A, Work& work) {
         fmt::format("coordinates for PETSc: found {} numbers, expected {} as the matrix has rows",
                     options_.coordinates.size(), A.cols()));
   }
-  matrix_ = A;
+  if (take_matrix(A)) engine_.reset();
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   try {
-    if (engine_ == nullptr || !engine_->fits(matrix_)) {
-      engine_.reset();
-      engine_ = std::make_unique<Engine>(matrix_, options_);
-    }
+    if (engine_ == nullptr) engine_ = std::make_unique<Engine>(matrix_, options_);
     return engine_->set_up(matrix_);
   } catch (const PetscFailure& failure) {
     engine_.reset();  // half made objects are not used again
@@ -242,8 +239,10 @@ Status PetscSolver::factorise(const SparseMatrix& A, Work& work) {
 }
 
 Status PetscSolver::replace_matrix(const SparseMatrix& A, Work& work) {
-  if (engine_ == nullptr || engine_->is_direct()) return factorise(A, work);
-  matrix_ = A;
+  if (engine_ == nullptr || engine_->is_direct() || !sparse::same_pattern(matrix_, A)) {
+    return factorise(A, work);
+  }
+  take_matrix(A);
   if (!ConstVectorMap(matrix_.valuePtr(), matrix_.nonZeros()).allFinite()) return non_finite_matrix();
   try {
     engine_->keep_preconditioner(matrix_);
@@ -252,6 +251,14 @@ Status PetscSolver::replace_matrix(const SparseMatrix& A, Work& work) {
     engine_.reset();
     return status_of(failure);
   }
+}
+
+void PetscSolver::forget() {
+  engine_.reset();
+}
+
+void PetscSolver::serialise(StateArchive&) {
+  throw InputError("the linear solver petsc cannot be saved: PETSc does not give out its memory");
 }
 
 LinearSolve PetscSolver::solve(ConstVectorRef b, VectorRef x, Work& work) {

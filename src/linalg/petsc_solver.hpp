@@ -28,12 +28,13 @@ class PetscSolver final : public LinearSolver {
   Status factorise(const SparseMatrix& A, Work& work) override;
   Status replace_matrix(const SparseMatrix& A, Work& work) override;
   LinearSolve solve(ConstVectorRef b, VectorRef x, Work& work) override;
+  void forget() override;
+  void serialise(StateArchive& archive) override;
 
  private:
   class Engine;
   LinearSolverOptions options_;
-  std::unique_ptr<Engine> engine_;  ///< made by the first factorise
-  SparseMatrix matrix_;
+  std::unique_ptr<Engine> engine_;  ///< made for each pattern
   Vector residual_;
 };
 

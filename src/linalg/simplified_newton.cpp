@@ -16,8 +16,8 @@ constexpr double divergence_rate = 0.9;
 
 SimplifiedNewton::SimplifiedNewton(Index size, const SimplifiedNewtonOptions& options)
     : options_(options),
-      solver_(make_linear_solver({.kind = options.solver})),
-      damped_(size, options.solver),
+      solver_(options.make_solver()),
+      damped_(size, options.make_solver()),
       residual_(size),
       correction_(size),
       start_(size) {}
@@ -26,6 +26,7 @@ Status SimplifiedNewton::renew(NewtonProblem& problem, ConstVectorRef u, double 
   has_matrix_ = false;
   if (Status status = solver_->factorise(problem.matrix(u), work); !status.ok()) return status;
   parameter_ = parameter;
+  revision_ = problem.pattern_revision();
   has_matrix_ = true;
   is_slow_ = false;
   return {};
@@ -67,8 +68,8 @@ SimplifiedNewton::Outcome SimplifiedNewton::iterate(NewtonProblem& problem, Vect
 Status SimplifiedNewton::solve(NewtonProblem& problem, VectorRef u, double parameter, double scale,
                                double floor, Work& work) {
   start_ = u;
-  const bool is_reused =
-      has_matrix_ && parameter == parameter_ && !is_slow_ && options_.rate_of_renewal > 0.0;
+  const bool is_reused = has_matrix_ && parameter == parameter_ && revision_ == problem.pattern_revision() &&
+                         !is_slow_ && options_.rate_of_renewal > 0.0;
   if (!is_reused) {
     if (Status status = renew(problem, u, parameter, work); !status.ok()) return status;
   }
@@ -85,6 +86,21 @@ Status SimplifiedNewton::solve(NewtonProblem& problem, VectorRef u, double param
     return damped_.solve(problem, u, scale, work);
   }
   return {};
+}
+
+void SimplifiedNewton::forget_matrix() {
+  has_matrix_ = false;
+  is_slow_ = false;
+  solver_->forget();
+  damped_.forget_matrix();
+}
+
+void SimplifiedNewton::serialise(StateArchive& archive) {
+  archive.visit("parameter of the matrix", parameter_);
+  archive.visit("has a matrix", has_matrix_);
+  archive.visit("converges slowly", is_slow_);
+  solver_->serialise(archive);
+  damped_.serialise(archive);
 }
 
 Status SimplifiedNewton::solve_linear(ConstVectorRef b, VectorRef x, Work& work) {

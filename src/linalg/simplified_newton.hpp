@@ -7,7 +7,7 @@
 namespace fw::linalg {
 
 struct SimplifiedNewtonOptions {
-  LinearSolverKind solver = LinearSolverKind::sparse_lu;
+  std::unique_ptr<LinearSolver> (*make_solver)() = default_direct_solver;
   /// The iteration ends when the remaining error, estimated by θ/(1 − θ)·‖correction‖∞, is at most this
   /// fraction of the scale. The default is the level of rounding, so that the iteration never limits an
   /// observed order.
@@ -19,7 +19,8 @@ struct SimplifiedNewtonOptions {
 /// Newton's iteration with one factorised matrix that is kept, over iterations and over solves, while its
 /// rate of convergence θ_k = ‖δ_k‖/‖δ_{k−1}‖ is good [Hairer, Wanner 1996, IV.8]. Where it diverges with an
 /// old matrix it starts again with a new one, and where it diverges with a new matrix the damped `Newton`
-/// takes over. All work space is allocated at construction, but for the factorisations of the linear solver.
+/// takes over. A matrix of another `pattern_revision` of the problem is not kept. All work space is allocated
+/// at construction, but for the factorisations of the linear solver.
 class SimplifiedNewton {
  public:
   SimplifiedNewton(Index size, const SimplifiedNewtonOptions& options);
@@ -35,8 +36,10 @@ class SimplifiedNewton {
   Status solve_linear(ConstVectorRef b, VectorRef x, Work& work);
   bool has_matrix() const { return has_matrix_; }
 
-  /// A new matrix at the next solve.
-  void forget_matrix() { has_matrix_ = false; }
+  /// Forgets the factors: the next solve works as the first one did.
+  void forget_matrix();
+  /// Visits what the next solve depends on.
+  void serialise(StateArchive& archive);
 
  private:
   enum class Outcome { converged, diverged, failed };
@@ -48,6 +51,7 @@ class SimplifiedNewton {
   Newton damped_;
   Vector residual_, correction_, start_;
   double parameter_ = 0.0;
+  std::uint64_t revision_ = 0;  ///< of the pattern of the matrix
   bool has_matrix_ = false;
   bool is_slow_ = false;
   Status failure_;

@@ -2,40 +2,55 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 
-#include "mechanics/block_pattern.hpp"
+#include "mechanics/assembly/element_assembly.hpp"
 #include "mechanics/mass_spring_model.hpp"
 #include "mechanics/spring_splitting.hpp"
+#include "ode/energies.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw::mechanics {
 
-/// Energies of a state [J].
-struct Energies {
-  double kinetic = 0.0;        ///< ½ Σ m v²
-  double elastic = 0.0;        ///< springs and anchors; defined at L = 0 too
-  double gravitational = 0.0;  ///< −Σ m g·x
-  double obstacle = 0.0;       ///< Σ ½ k δ²
-  double potential() const { return elastic + gravitational + obstacle; }
-  double total() const { return kinetic + potential(); }
+/// What a mass-spring system is made of besides its model, for those who have other elements or faster loops
+/// than the shipped ones. Each is called with the system's own copy of the model, which outlives the result.
+struct SystemParts {
+  /// The sums over the elements; empty: those of the model, over the types of `ElementBatch`.
+  std::function<std::unique_ptr<const ElementAssembly>(const MassSpringModel& model)> elements{};
+  /// The forces in double precision; empty: the plain loop of the elements.
+  std::function<std::unique_ptr<const ForceKernel>(const MassSpringModel& model)> kernel{};
 };
 
 /// A damped mass-spring system as a first-order system y = (x, v), particle i at 3i, 3i+1, 3i+2 of each half
 /// [Zachmann 2011, S5-S9].
 ///
-/// The forces are those of `mass_spring_force`, the matrices are assembled from `visit_tangents`. A fixed
-/// particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero in the
-/// state, so that it holds still in dampers and energies as well. Outputs may not alias inputs. Evaluations
-/// allocate nothing but the pattern, which is made on first use of a matrix and shared by all threads.
+/// Forces, energies and matrices are sums over the force elements (mechanics/elements, mechanics/assembly). A
+/// fixed particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero
+/// in the state, so that it holds still in dampers and energies as well. Outputs may not alias inputs.
+/// Evaluations allocate nothing but the pattern, which is made on first use of a matrix and shared by all
+/// threads.
 class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
  public:
   /// Checks sizes, index ranges and signs of the parameters; throws InputError that names the entry.
-  explicit MassSpringSystem(MassSpringModel model);
+  explicit MassSpringSystem(MassSpringModel model, SystemParts parts = {});
   ~MassSpringSystem() override;
 
   const MassSpringModel& model() const { return model_; }
+  const ElementAssembly& elements() const { return *elements_; }
+  /// Positions of each element's blocks in the matrices, made once on first use.
+  const BlockPattern& block_pattern() const;
+
+  /// Gives the system other elements on the same particles: `model` has as many particles as before, with the
+  /// same masses and fixed ones. Not to be called while anything evaluates the system; references to
+  /// elements and pattern end, a splitting splits the new elements. Throws InputError for a bad model, and the
+  /// system stays as it is.
+  void change_elements(MassSpringModel model);
+  /// How often the elements have been changed.
+  std::uint64_t element_revision() const { return element_revision_; }
+  /// How often the structure of the matrices has changed: those of another revision do not fit.
+  std::uint64_t pattern_revision() const { return pattern_revision_; }
   Index particle_count() const { return static_cast<Index>(model_.mass.size()); }
 
   // OdeSystem
@@ -85,23 +100,36 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   std::uint64_t degenerate_spring_evaluations() const { return degenerate_.load(std::memory_order_relaxed); }
 
  private:
-  /// Positions of each spring's blocks in the matrices, made once on first use.
-  const BlockPattern& pattern() const;
   void count_degenerate(std::uint64_t springs) const {
     if (springs > 0) degenerate_.fetch_add(springs, std::memory_order_relaxed);
   }
+  std::uint64_t evaluate_force(const double* q, const double* v, double* f) const {
+    return (kernel_ != nullptr ? *kernel_ : static_cast<const ForceKernel&>(*elements_)).force(q, v, f);
+  }
+  template <class Scalar>
+  std::uint64_t evaluate_force(const Scalar* q, const Scalar* v, Scalar* f) const {
+    return elements_->force(q, v, f);
+  }
   template <class Scalar>
   void evaluate_rhs(const Scalar* y, Scalar* dydt) const;
-  void require_tangent(const SparseMatrix& matrix, const char* name) const;
+  void make_elements();
+
+  /// What is made of the elements on first use.
+  struct Derived {
+    std::once_flag pattern_once, splitting_once;
+    std::unique_ptr<const BlockPattern> pattern;
+    std::unique_ptr<SpringSplitting> splitting;
+  };
 
   MassSpringModel model_;
+  SystemParts parts_;
   Vector mass_;              ///< 3n, model_.mass repeated
   std::vector<char> fixed_;  ///< 3n
-  ForceClass force_class_;
-  mutable std::once_flag pattern_once_;
-  mutable std::unique_ptr<const BlockPattern> pattern_;
-  mutable std::once_flag splitting_once_;
-  mutable std::unique_ptr<const SpringSplitting> splitting_;
+  std::unique_ptr<const ElementAssembly> elements_;
+  std::unique_ptr<const ForceKernel> kernel_;  ///< null: the elements' own
+  std::unique_ptr<Derived> derived_;
+  ForceClass force_class_ = ForceClass::position;
+  std::uint64_t element_revision_ = 0, pattern_revision_ = 0;
   mutable std::atomic<std::uint64_t> degenerate_{0};
 };
 

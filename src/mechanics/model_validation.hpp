@@ -4,8 +4,9 @@
 
 namespace fw::mechanics {
 
-/// Checks every parameter of `model`: sizes, index ranges, signs, finiteness. Throws InputError that names
-/// the array, the index, what was found and what was expected.
-void validate(const MassSpringModel& model);
+/// Checks masses and fixed particles of `model`: sizes, index ranges, signs, finiteness. Throws InputError
+/// that names the array, the index, what was found and what was expected. Force elements check themselves
+/// where they are assembled.
+void validate_particles(const MassSpringModel& model);
 
 }  // namespace fw::mechanics

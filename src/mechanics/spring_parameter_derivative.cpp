@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "mechanics/mass_spring_force.hpp"
-#include "mechanics/spring_force.hpp"
+#include "mechanics/elements/spring_force.hpp"
 
 namespace fw::mechanics {
 
@@ -39,7 +38,7 @@ void parameter_derivative(const MassSpringModel& model, const SpringParameterGro
                           ConstVectorRef v, VectorRef out) {
   const Springs& springs = model.springs;
   out.setZero();
-  const auto add = [&](std::size_t e) {
+  const auto add = [&](std::size_t e, SpringLaw law_of_spring) {
     const int i = springs.first[e];
     const int j = springs.second[e];
     const Vec3<double> d = load3(q.data(), j) - load3(q.data(), i);
@@ -47,7 +46,7 @@ void parameter_derivative(const MassSpringModel& model, const SpringParameterGro
     if (length == 0.0) return;
     const Vec3<double> r = (1.0 / length) * d;
     const double lengthening = dot(load3(v.data(), j) - load3(v.data(), i), r);
-    const double slope = with_spring_law(springs.law, [&](auto law) {
+    const double slope = with_spring_law(law_of_spring, [&](auto law) {
       return tension_derivative<decltype(law)::value>(group.parameter, spring_parameters(springs, e), length,
                                                       lengthening);
     });
@@ -55,9 +54,13 @@ void parameter_derivative(const MassSpringModel& model, const SpringParameterGro
     add3(out.data(), j, -slope * r);
   };
   if (group.springs.empty()) {
-    for (std::size_t e = 0; e < springs.size(); ++e) add(e);
+    springs.for_each_group([&](const SpringGroup& of_one_law, std::size_t begin) {
+      for (std::size_t e = begin; e < begin + of_one_law.size; ++e) add(e, of_one_law.law);
+    });
   }
-  for (const int e : group.springs) add(static_cast<std::size_t>(e));
+  for (const int e : group.springs) {
+    add(static_cast<std::size_t>(e), springs.law_of(static_cast<std::size_t>(e)));
+  }
   for (const int i : model.fixed) store3(out.data(), i, Vec3<double>{});
 }
 

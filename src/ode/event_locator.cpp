@@ -150,8 +150,8 @@ bool EventLocator::observe(const StepView& view) {
 }
 
 Solution solve_with_events(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
-                           EventLocator& locator) {
-  Solution solution = integrator.solve(ivp, control, locator);
+                           EventLocator& locator, const SolveOptions& options) {
+  Solution solution = integrator.solve(ivp, control, locator, options);
   if (const Event* event = locator.terminal_event()) {
     const std::string& name = locator.functions()[event->function].name;
     solution.time = event->time;

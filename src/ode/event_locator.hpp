@@ -42,23 +42,18 @@ struct EventOptions {
 /// Watches event functions along a run, locates their zeros inside the steps and passes every step on to
 /// another observer.
 ///
-/// - A change of sign between two samples is located by the ITP method [Oliveira, Takahashi 2020] on the
-/// dense output
-///   of the step: never slower than bisection by more than two evaluations, superlinear for simple zeros. The
-///   time reported is the far end of a bracket not wider than `time_tolerance` (or neighbouring doubles), so
-///   that g has its new sign there or is zero, and a run that goes on from there does not meet the event
-///   again. To the bracket adds what the dense output is off, divided by |dg/dt|.
-/// - Several events of one step are reported in the order of time, at equal times in the order of the
-/// functions.
-/// - A zero at the start of the run is no event; neither is leaving it. A zero exactly at a sample is an
-/// event when
-///   it is reached (so also where g only touches zero there), once.
+/// - A change of sign between two samples is located by the ITP method [Oliveira, Takahashi 2020] on the dense
+///   output of the step: never slower than bisection by more than two evaluations, superlinear for simple
+///   zeros. The time reported is the far end of a bracket not wider than `time_tolerance` (or neighbouring
+///   doubles), so that g has its new sign there or is zero, and a run that goes on from there does not meet the
+///   event again. Its error is at most the width of the bracket + the error of the dense output / |dg/dt|.
+/// - Several events of one step are reported in the order of time, at equal times in the order of the functions.
+/// - A zero at the start of the run is no event; neither is leaving it. A zero exactly at a sample is an event
+///   when it is reached (so also where g only touches zero there), once.
 /// - An even number of zeros between two samples is not seen: double zeros (grazing) and zeros closer to each
-/// other
-///   than the samples. `samples_per_step` narrows the gap; each sample inside costs an interpolation.
+///   other than the samples. `samples_per_step` narrows the gap; each sample inside costs an interpolation.
 /// - After a terminal event nothing later is reported; the inner observer gets the event as its last view
-/// (index of
-///   the step, `last` false) and the run is stopped.
+///   (index of the step, `last` false) and the run is stopped.
 class EventLocator final : public Observer {
  public:
   /// Throws InputError where an option is out of range or a function is missing. `inner` outlives the
@@ -95,6 +90,6 @@ class EventLocator final : public Observer {
 /// `integrator.solve` with `locator` as observer. Where a terminal event stops the run, time and state of the
 /// solution are those of the event, and its status is stopped_by_observer with the name of the event.
 Solution solve_with_events(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
-                           EventLocator& locator);
+                           EventLocator& locator, const SolveOptions& options = {});
 
 }  // namespace fw

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "ode/first_order_jacobian.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw {
@@ -71,8 +72,6 @@ class FunctorSystem final : public OdeSystem {
     }
   }
 
-  const SecondOrderSystem* second_order() const override { return nullptr; }
-
  private:
   std::size_t count() const { return static_cast<std::size_t>(size_); }
 
@@ -90,7 +89,8 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
       : mass_(std::move(mass)),
         fixed_(static_cast<std::size_t>(mass_.size()), 0),
         force_class_(force_class),
-        functor_(std::move(functor)) {}
+        functor_(std::move(functor)),
+        blocks_(FunctorSecondOrderSystem::tangent_pattern()) {}
 
   Index size() const override { return 2 * mass_.size(); }
   void rhs(double t, ConstVectorRef y, VectorRef dydt) const override {
@@ -103,34 +103,23 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
     evaluate(Complex(t), y, dydt);
   }
 
-  SparseMatrix jacobian_pattern() const override {
-    const Index n = mass_.size();
-    std::vector<Eigen::Triplet<double, int>> entries;
-    for (Index j = 0; j < 2 * n; ++j) {
-      for (Index i = n; i < 2 * n; ++i) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), 0.0);
-      if (j < n) entries.emplace_back(static_cast<int>(j), static_cast<int>(j), 0.0);
-      if (j >= n) entries.emplace_back(static_cast<int>(j - n), static_cast<int>(j), 0.0);
-    }
-    SparseMatrix pattern(2 * n, 2 * n);
-    pattern.setFromTriplets(entries.begin(), entries.end());
-    return pattern;
-  }
+  SparseMatrix jacobian_pattern() const override { return blocks_.pattern(); }
   void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override {
-    const Index n = mass_.size();
-    // A column j < n holds its zero diagonal entry and then n force rows; a column j ≥ n holds the unit entry
-    // of q̇ = v and then n force rows.
-    double* value = J.valuePtr();
-    for (Index j = 0; j < 2 * n; ++j) {
-      *value++ = j < n ? 0.0 : 1.0;
-      force_derivative(t, y.head(n), y.tail(n), j, [&](Index i, double df) { value[i] = df / mass_[i]; });
-      value += n;
+    const auto n = static_cast<int>(mass_.size());
+    double* values = J.valuePtr();
+    for (int j = 0; j < n; ++j) {
+      values[blocks_.diagonal(j)] = 0.0;
+      values[blocks_.unit(j)] = 1.0;
+      force_derivative(t, y.head(n), y.tail(n), j, [&](Index i, double df) {
+        values[blocks_.stiffness(j * n + static_cast<int>(i), j)] = df / mass_[i];
+      });
+      force_derivative(t, y.head(n), y.tail(n), n + j, [&](Index i, double df) {
+        values[blocks_.damping(j * n + static_cast<int>(i), j)] = df / mass_[i];
+      });
     }
   }
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override {
-    const Index n = mass_.size();
-    out.head(n) = w.tail(n);
-    tangent_product(t, y.head(n), y.tail(n), w.head(n), w.tail(n), out.tail(n));
-    out.tail(n).array() /= mass_.array();
+    first_order_product(*this, t, y, w, out);
   }
   const SecondOrderSystem* second_order() const override { return this; }
 
@@ -138,7 +127,6 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
   const Vector& mass() const override { return mass_; }
   const std::vector<char>& fixed() const override { return fixed_; }
   ForceClass force_class() const override { return force_class_; }
-  bool has_springs() const override { return false; }
   void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override {
     functor_(t, std::span<const double>(q.data(), count()), std::span<const double>(v.data(), count()),
              std::span<double>(f.data(), count()));
@@ -181,7 +169,6 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
       out[static_cast<Index>(i)] = f[i].imag() / detail::complex_step;
     }
   }
-  const ForceSplitting* force_splitting() const override { return nullptr; }
 
  private:
   std::size_t count() const { return static_cast<std::size_t>(mass_.size()); }
@@ -210,6 +197,7 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
   std::vector<char> fixed_;
   ForceClass force_class_;
   Functor functor_;
+  FirstOrderJacobian blocks_;  ///< of a dense tangent
 };
 
 }  // namespace fw

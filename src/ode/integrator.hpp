@@ -7,8 +7,10 @@
 
 #include "core/status.hpp"
 #include "core/work.hpp"
+#include "ode/capabilities.hpp"
 #include "ode/ivp.hpp"
 #include "ode/observer.hpp"
+#include "ode/solve_options.hpp"
 #include "ode/step_control.hpp"
 
 namespace fw {
@@ -42,10 +44,7 @@ struct MethodInfo {
   bool conserves_energy = false;  ///< of systems without damping, exactly
   bool is_a_stable = false;
   bool is_l_stable = false;
-  bool needs_second_order = false;     ///< works on M q̈ = f(t, q, v) only
-  bool needs_position_forces = false;  ///< works where f = f(t, q) only
-  bool needs_springs = false;          ///< works on mass-spring systems only
-  bool needs_force_splitting = false;  ///< works where forces come in a stiff and a soft part
+  Capabilities needs{};  ///< what the system must have; none: any ẏ = f(t, y)
   /// What iterative solvers leave of their equations, relative: conservation holds to it. 0: rounding.
   double iteration_tolerance = 0.0;
   std::string formula{};    ///< one step in formula
@@ -54,6 +53,10 @@ struct MethodInfo {
 
 /// Why a scheme cannot run on this system, as a clause for people ("the method needs ..."); empty if it can.
 std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system);
+
+/// The order that a scheme claims on this system: `order_with_velocity_forces` where forces depend on
+/// velocity, else `order`.
+int order_on(const MethodInfo& info, const OdeSystem& system);
 
 /// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double
 /// cannot show.
@@ -72,11 +75,14 @@ class Integrator {
   /// Solves `ivp` and shows every accepted step to `observer`. A numerical failure is a Status of the
   /// returned Solution, whose time and state are the last good ones. Throws InputError where the scheme
   /// cannot do what is asked (wrong kind of step control, structure missing, a multistep scheme with a broken
-  /// interval).
-  Solution solve(const Ivp& ivp, const StepControl& control, Observer& observer) const;
+  /// interval, a foreign scheme that is to be saved). A run that was asked to stop has the status
+  /// interrupted.
+  Solution solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                 const SolveOptions& options = {}) const;
 
  private:
-  virtual Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const = 0;
+  virtual Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                            const SolveOptions& options) const = 0;
 };
 
 }  // namespace fw

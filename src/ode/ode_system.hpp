@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "core/extended_precision.hpp"
@@ -27,7 +28,8 @@ class OdeSystem {
   /// The analytic continuation of f to complex states (branches look at the real part).
   virtual void rhs(double t, std::span<const Complex> y, std::span<Complex> dydt) const = 0;
 
-  /// An N×N matrix of zeros with the pattern of J = ∂f/∂y and a full diagonal. Made once per run.
+  /// An N×N matrix of zeros with the pattern of J = ∂f/∂y and a full diagonal. Asked for at the start of a
+  /// run and when `pattern_revision` has changed.
   virtual SparseMatrix jacobian_pattern() const = 0;
 
   /// J(t, y) = ∂f/∂y into a matrix from `jacobian_pattern()`.
@@ -38,7 +40,11 @@ class OdeSystem {
 
   /// The structure y = (q, v), M v̇ = f(t, q, v), or null where there is none. Then N = 2n, the first n
   /// entries of y are positions and the last n velocities.
-  virtual const SecondOrderSystem* second_order() const = 0;
+  virtual const SecondOrderSystem* second_order() const { return nullptr; }
+
+  /// Changes when `jacobian_pattern` does, which may happen between steps and never during one (contacts that
+  /// are found at accepted steps). A system whose pattern is fixed leaves it at 0.
+  virtual std::uint64_t pattern_revision() const { return 0; }
 };
 
 }  // namespace fw

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/types.hpp"
@@ -42,13 +43,13 @@ class SecondOrderSystem {
   virtual ForceClass force_class() const = 0;
 
   /// Whether this is a mass-spring system, for schemes that are made for springs.
-  virtual bool has_springs() const = 0;
+  virtual bool has_springs() const { return false; }
 
   /// f(t, q, v) [N]; rows of fixed degrees of freedom are zero.
   virtual void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const = 0;
 
-  /// An n×n matrix of zeros with the union of the patterns of M, K and D. Made once per run; symmetric
-  /// pattern, diagonal included.
+  /// An n×n matrix of zeros with the union of the patterns of M, K and D; symmetric pattern, diagonal
+  /// included. Asked for at the start of a run and when `pattern_revision` has changed.
   virtual SparseMatrix tangent_pattern() const = 0;
 
   /// K = ∂f/∂q [N/m] into a matrix from `tangent_pattern()`. Rows of fixed degrees of freedom are zero (their
@@ -64,7 +65,11 @@ class SecondOrderSystem {
                                ConstVectorRef dv, VectorRef out) const = 0;
 
   /// The forces in a stiff and a soft part, or null where the system knows no such splitting.
-  virtual const ForceSplitting* force_splitting() const = 0;
+  virtual const ForceSplitting* force_splitting() const { return nullptr; }
+
+  /// Changes when `tangent_pattern` does, which may happen between steps and never during one (contacts that
+  /// are found at accepted steps). A system whose pattern is fixed leaves it at 0.
+  virtual std::uint64_t pattern_revision() const { return 0; }
 };
 
 }  // namespace fw

@@ -42,4 +42,22 @@ StepCount count_whole_steps(std::string_view method, double t0, double t1, doubl
                   step, length, method, fitting));
 }
 
+void check_tolerances(std::string_view method, const AdaptiveStep& control) {
+  const auto require = [&](bool holds, const std::string& what) {
+    if (!holds) throw InputError(fmt::format("method \"{}\": {}", method, what));
+  };
+  require(std::isfinite(control.relative_tolerance) && control.relative_tolerance > 0.0,
+          fmt::format("relative tolerance: found {}, expected > 0", control.relative_tolerance));
+  require(std::isfinite(control.absolute_tolerance) && control.absolute_tolerance > 0.0,
+          fmt::format("absolute tolerance: found {}, expected > 0", control.absolute_tolerance));
+  require(control.initial_step >= 0.0 && std::isfinite(control.initial_step),
+          fmt::format("initial step: found {}, expected >= 0", control.initial_step));
+  require(control.minimum_step >= 0.0 && control.maximum_step > control.minimum_step,
+          fmt::format("step limits: found {} to {}, expected 0 <= minimum < maximum", control.minimum_step,
+                      control.maximum_step));
+  require(control.initial_step == 0.0 || control.initial_step >= control.minimum_step,
+          fmt::format("initial step: found {}, expected at least the minimum of {}", control.initial_step,
+                      control.minimum_step));
+}
+
 }  // namespace fw

@@ -24,6 +24,10 @@ struct AdaptiveStep {
   std::uint64_t maximum_steps = 100'000'000;
 };
 
+/// Throws InputError that names `method` and the value unless both tolerances are finite and > 0, the first
+/// step is finite and >= 0, 0 <= minimum < maximum, and the first step, if given, is at least the minimum.
+void check_tolerances(std::string_view method, const AdaptiveStep& control);
+
 using StepControl = std::variant<FixedStep, AdaptiveStep>;
 
 /// How an interval divides into steps.

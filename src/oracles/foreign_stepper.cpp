@@ -4,42 +4,65 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
-#include "integrators/loop/hermite_interpolant.hpp"
-#include "integrators/loop/run_checks.hpp"
+#include "integrators/loop/run_loop.hpp"
+#include "integrators/loop/stepper.hpp"
 
 namespace fw::oracles {
 
 namespace {
 
-/// Some libraries only warn of steps below the rounding of t and would go on with them for ever.
-constexpr int most_steps_without_progress = 20;
-
-/// Where the steps have to end: at each multiple of the constant step, or at the end time only.
-class StepLimits {
+/// The steps of a library. They have to end at each multiple of a constant step, or at the end time only.
+class ForeignSteps final : public integrators::StepSource {
  public:
-  StepLimits(const MethodInfo& info, const Ivp& ivp, const StepControl& control)
-      : start_(ivp.t0), end_(ivp.t1) {
+  ForeignSteps(const MethodInfo& info, const Ivp& ivp, const StepControl& control,
+               std::unique_ptr<ForeignStepper> stepper)
+      : info_(info), start_(ivp.t0), end_(ivp.t1), stepper_(std::move(stepper)) {
     if (const auto* fixed = std::get_if<FixedStep>(&control)) {
       step_ = fixed->step;
-      total_ = (fixed->allow_short_last_step && !info.is_multistep
-                    ? count_steps(ivp.t0, ivp.t1, step_)
-                    : count_whole_steps(info.name, ivp.t0, ivp.t1, step_))
-                   .total();
+      total_ = integrators::count_steps_of(info, ivp, *fixed).total();
     }
   }
 
-  bool are_of_constant_steps() const { return step_ != 0.0; }
-
-  double of_step(std::uint64_t n) const {
-    return step_ == 0.0 || n >= total_ ? end_ : start_ + static_cast<double>(n) * step_;
+  Status propose(integrators::LoopStep& step) override {
+    step.end = step_ == 0.0 || step.index >= total_ ? end_ : start_ + static_cast<double>(step.index) * step_;
+    return {};
   }
 
+  Status attempt(integrators::LoopStep& step, ConstVectorRef y, VectorRef y_new) override {
+    y_new = y;
+    const double limit = step.end;
+    double t = step.start;
+    if (Status status = stepper_->advance(limit, t, y_new); !status.ok()) return status;
+    if (step_ != 0.0 && std::abs(t - limit) > 1e-6 * std::abs(limit - step.start)) {
+      return {StatusCode::library_failure,
+              fmt::format("at t = {:.6g} the library stepped to {:.17g} instead of {:.17g}", step.start, t,
+                          limit)};
+    }
+    step.end = t;
+    step.is_last = t >= end_;
+    step.is_accepted = true;
+    return {};
+  }
+
+  void accept(const integrators::LoopStep&) override {}
+  bool has_dense_output() const override { return stepper_->has_dense_output(); }
+  void interpolate(double t, VectorRef out) override { stepper_->interpolate(t, out); }
+  void restart(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  void serialise(StateArchive&) override {
+    throw InputError(
+        fmt::format("method \"{}\" cannot be saved: the library does not give out its memory", info_.name));
+  }
+  void collect_work(Work& work) const override { stepper_->collect_work(work); }
+
  private:
+  const MethodInfo& info_;
   double start_, end_;
-  double step_ = 0.0;  ///< 0: the solver chooses
+  double step_ = 0.0;  ///< 0: the library chooses
   std::uint64_t total_ = 0;
+  std::unique_ptr<ForeignStepper> stepper_;
 };
 
 StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, const StepControl& control) {
@@ -54,10 +77,7 @@ StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, con
     throw InputError(fmt::format("method \"{}\" has a fixed step: give a step, not tolerances", info.name));
   }
   AdaptiveStep tolerances = std::get<AdaptiveStep>(control);
-  if (!(tolerances.relative_tolerance > 0.0) || !(tolerances.absolute_tolerance > 0.0)) {
-    throw InputError(fmt::format("tolerances: found {} and {}, expected both > 0",
-                                 tolerances.relative_tolerance, tolerances.absolute_tolerance));
-  }
+  check_tolerances(info.name, tolerances);
   tolerances.relative_tolerance =
       std::min(tolerances.relative_tolerance,
                std::max(tolerances.relative_tolerance * scaling.factor, scaling.smallest_relative));
@@ -65,71 +85,22 @@ StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, con
   return tolerances;
 }
 
-/// Advances to the end; time and state of `solution` are the last good ones.
-Status run(const StepLimits& limits, std::uint64_t maximum_steps, const Ivp& ivp, ForeignStepper& stepper,
-           Observer& observer, Solution& solution) {
-  integrators::HermiteInterpolant hermite(*ivp.system, solution.work);
-  const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) {
-    if (stepper.has_dense_output()) {
-      stepper.interpolate(t, out);
-    } else {
-      hermite(t, out);
-    }
-  };
-  Vector y = ivp.y0;
-  double t = ivp.t0;
-  int steps_without_progress = 0;
-  for (std::uint64_t n = 1;; ++n) {
-    if (n > maximum_steps) {
-      return {StatusCode::step_limit,
-              fmt::format("{} steps did not reach the end: stopped at t = {:.6g}", n - 1, t)};
-    }
-    const double t_before = t;
-    if (Status status = stepper.advance(limits.of_step(n), t, y); !status.ok()) return status;
-    if (limits.are_of_constant_steps() &&
-        std::abs(t - limits.of_step(n)) > 1e-6 * std::abs(limits.of_step(n) - t_before)) {
-      return {StatusCode::library_failure,
-              fmt::format("at t = {:.6g} the library stepped to {:.17g} instead of {:.17g}", t_before, t,
-                          limits.of_step(n))};
-    }
-    if (Status status = integrators::check_state(y, t, n); !status.ok()) return status;
-    steps_without_progress = t > t_before ? 0 : steps_without_progress + 1;
-    if (steps_without_progress == most_steps_without_progress) {
-      return {StatusCode::step_too_small,
-              fmt::format("at t = {:.6g} the step fell below the rounding of t", t)};
-    }
-    ++solution.work.accepted_steps;
-    const bool last = t >= ivp.t1;
-    if (last) t = ivp.t1;
-    hermite.set_step(t_before, t, solution.state, y);
-    const bool go_on = observer.observe({n, t, y, last, interpolate});
-    solution.time = t;
-    solution.state = y;
-    if (last) return {};
-    if (!go_on) return {StatusCode::stopped_by_observer, fmt::format("stopped at t = {:.6g}", t)};
-  }
-}
-
 }  // namespace
 
-Solution OracleIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
+Solution OracleIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                                    const SolveOptions& options) const {
   const StepControl given_to_library = checked(info_, scaling_, control);
-  const StepLimits limits(info_, ivp, control);
+  // Refused before the observer sees the start.
+  if (const auto* fixed = std::get_if<FixedStep>(&control)) integrators::count_steps_of(info_, ivp, *fixed);
   const auto* tolerances = std::get_if<AdaptiveStep>(&control);
-  const std::function<void(double, VectorRef)> nothing_yet;
-  Solution solution;
-  solution.time = ivp.t0;
-  solution.state = ivp.y0;
-  if (!observer.observe({0, ivp.t0, ivp.y0, false, nothing_yet})) {
-    solution.status = {StatusCode::stopped_by_observer, "stopped at the start"};
-    return solution;
-  }
-  const std::unique_ptr<ForeignStepper> stepper = make_stepper_(ivp, given_to_library, solution.work);
-  const std::uint64_t maximum_steps =
-      tolerances != nullptr ? tolerances->maximum_steps : std::numeric_limits<std::uint64_t>::max();
-  solution.status = run(limits, maximum_steps, ivp, *stepper, observer, solution);
-  stepper->collect_work(solution.work);
-  return solution;
+  return integrators::run_loop(
+      info_, ivp,
+      [&](Work& work) -> std::unique_ptr<integrators::StepSource> {
+        return std::make_unique<ForeignSteps>(info_, ivp, control,
+                                              make_stepper_(ivp, given_to_library, work));
+      },
+      observer, options,
+      tolerances != nullptr ? tolerances->maximum_steps : std::numeric_limits<std::uint64_t>::max());
 }
 
 }  // namespace fw::oracles

@@ -25,6 +25,10 @@ class ForeignStepper {
   /// y(t) inside the last step.
   virtual void interpolate(double t, VectorRef out) = 0;
 
+  /// The state is y at t, which no step has led to: the library's memory starts anew from it, as a new run
+  /// does. What it has counted so far stays counted.
+  virtual void restart(double t, ConstVectorRef y) = 0;
+
   /// Adds what only the library has counted (steps rejected, factorisations, ...) to `work`. Called once, at
   /// the end. Accepted steps are counted by the loop, calls of our functions where they happen.
   virtual void collect_work(Work& work) const = 0;
@@ -42,9 +46,9 @@ struct ToleranceScaling {
   double smallest_relative = 1e-13;
 };
 
-/// A foreign solver behind the interface of our own schemes: checks of the step control, the time loop, limit
-/// of steps, steps that no longer advance time, values that are not finite, observers and dense output are
-/// the same for all of them.
+/// A foreign solver behind the interface of our own schemes: checks of the step control are the same for all
+/// of them, and the time loop is that of our own schemes. The memory of a library cannot be saved: a run with
+/// checkpoints is refused.
 class OracleIntegrator final : public Integrator {
  public:
   OracleIntegrator(MethodInfo info, ForeignStepperFactory make_stepper, ToleranceScaling scaling = {})
@@ -54,7 +58,8 @@ class OracleIntegrator final : public Integrator {
   const ExtendedSolver& extended_solver() const override { return no_extended_solver_; }
 
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions& options) const override;
 
   MethodInfo info_;
   ForeignStepperFactory make_stepper_;

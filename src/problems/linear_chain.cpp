@@ -61,6 +61,7 @@ Problem linear_chain(const ProblemParameters& given) {
   const Parameter mass = parameters.positive("mass"), stiffness = parameters.positive("stiffness");
   Problem problem;
   problem.name = "linear_chain";
+  problem.test_equation = TestEquation::spring_chain;
   problem.title = "Chain of masses and linear springs between fixed ends";
   problem.description =
       "m u_i'' = k (u_{i-1} - 2 u_i + u_{i+1}), i = 1..N, u_0 = u_{N+1} = 0; u_1(0) = 1, u_N'(0) = 1/2, rest "

@@ -1,8 +1,8 @@
 #include "problems/oscillators.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "dense/eigenvalues.hpp"
 #include "ode/functor_system.hpp"
 #include "problems/parameter.hpp"
 #include "problems/spectral_radius.hpp"
@@ -70,7 +70,7 @@ Problem linear_oscillator(const Parameter& mass, const Parameter& stiffness, con
   };
   Matrix J(2, 2);
   J << 0.0, 1.0, -stiffness.binary() / mass.binary(), -damping.binary() / mass.binary();
-  problem.stiffness = [radius = J.eigenvalues().cwiseAbs().maxCoeff()] { return radius; };
+  problem.stiffness = [radius = dense::eigenvalues(J).cwiseAbs().maxCoeff()] { return radius; };
   return problem;
 }
 
@@ -85,6 +85,7 @@ Problem harmonic_oscillator(const ProblemParameters& given) {
   const Parameter mass = parameters.positive("mass"), stiffness = parameters.positive("stiffness");
   Problem problem = linear_oscillator(mass, stiffness, Parameter(0.0));
   problem.name = "harmonic_oscillator";
+  problem.test_equation = TestEquation::single_oscillation;
   problem.title = "Harmonic oscillator";
   problem.description =
       "m q'' = -k q, q(0) = 1, q'(0) = 1/2 on [0, 7.3]; q(t) = cos wt + sin(wt)/(2w), w = sqrt(k/m). "

@@ -23,6 +23,14 @@ struct KnownValue {
   std::string digits;   ///< decimal, as published
 };
 
+/// The equations that theory is made for, as far as statements hold on them alone.
+enum class TestEquation {
+  none,
+  single_oscillation,  ///< one undamped oscillation, q̈ = −ω²q or its first-order form, ω = `stiffness`
+  prothero_robinson,   ///< ẏ = λ(y − φ(t)) + φ'(t)
+  spring_chain,        ///< equal masses in a row, each tied to the next by a spring without a damper
+};
+
 /// A named initial value problem with everything that is known of it.
 struct Problem {
   std::string name;  ///< as it is called in studies, for example "henon_heiles"
@@ -30,6 +38,7 @@ struct Problem {
   std::string description;  ///< the equations, in formula
   std::string source;       ///< literature
   Ivp ivp;
+  TestEquation test_equation = TestEquation::none;
   /// y(t) in closed form, in binary128; empty where there is none.
   std::function<std::vector<Float128>(const Float128& t)> exact;
   std::vector<Invariant> invariants;

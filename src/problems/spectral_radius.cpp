@@ -1,9 +1,10 @@
 #include "problems/spectral_radius.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "dense/eigenvalues.hpp"
+#include "dense/factorisations.hpp"
 
 namespace fw::problems {
 
@@ -40,12 +41,12 @@ double spectral_radius_along_solution(const Ivp& ivp) {
       const double largest = std::max(scale.maxCoeff(), 1e-300);
       if (sampled_at.size() == 0 ||
           ((y - sampled_at).array().abs() / (scale.array() + 1e-6 * largest)).maxCoeff() > 0.02) {
-        radius = std::max(radius, J.eigenvalues().cwiseAbs().maxCoeff());
+        radius = std::max(radius, dense::eigenvalues(J).cwiseAbs().maxCoeff());
         sampled_at = y;
       }
       fresh = true;
     }
-    const Eigen::PartialPivLU<Matrix> W(Matrix::Identity(n, n) - h * d * J);
+    const dense::Lu W(Matrix::Identity(n, n) - h * d * J);
     const Vector k1 = W.solve(f0 + h * d * time_derivative);
     system.rhs(t + 0.5 * h, y + 0.5 * h * k1, f1);
     const Vector k2 = W.solve(f1 - k1) + k1;

@@ -106,6 +106,7 @@ Problem rotation(const ProblemParameters& given) {
   const ParameterSet parameters(rotation_entry(), given);
   Problem problem;
   problem.name = "rotation";
+  problem.test_equation = TestEquation::single_oscillation;
   problem.title = "Rotation of the lecture (circles)";
   problem.description =
       "x1' = -x2, x2' = x1, x(0) = (1, 0) on [0, 7.3]; x(t) = (cos t, sin t). Stiffness: |+-i| = 1.";
@@ -162,6 +163,7 @@ Problem prothero_robinson(const ProblemParameters& given) {
   const Parameter lambda = parameters["lambda"];
   Problem problem;
   problem.name = "prothero_robinson";
+  problem.test_equation = TestEquation::prothero_robinson;
   problem.title = "Prothero-Robinson equation";
   problem.description =
       "y' = lambda (y - cos t) - sin t, y(0) = 1 on [0, 1.3]; y(t) = cos t for every lambda "

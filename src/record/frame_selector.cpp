@@ -42,6 +42,14 @@ void FrameSelector::write(double time, ConstVectorRef state) {
   ++next_;
 }
 
+void FrameSelector::resume(std::uint64_t written) {
+  if (written > expected_) {
+    throw InputError(
+        fmt::format("frames: found {} before the continued run, expected at most {}", written, expected_));
+  }
+  next_ = written_ = written;
+}
+
 bool FrameSelector::observe(const StepView& view) {
   if (step_ > 0.0) {
     observe_fixed(view);

@@ -20,6 +20,9 @@ class FrameSelector final : public Observer {
 
   bool observe(const StepView& view) override;
 
+  /// Goes on after the first `written` frames, which the sink has already: for a run that continues another.
+  void resume(std::uint64_t written);
+
   /// Frames passed on so far.
   std::uint64_t written() const { return written_; }
   /// Frames that a run to the end stores.

@@ -90,8 +90,9 @@ void read_rest_length(const CheckedTable& table, const Vector& position, mechani
   springs.rest_length = table.number_or_list("rest_length", springs.size(), "spring", rule);
 }
 
-void read_springs(const CheckedTable& table, Scene& scene) {
-  mechanics::Springs& springs = scene.model.springs;
+/// One section [springs] or [[springs]].
+mechanics::Springs read_spring_section(const CheckedTable& table, const Scene& scene) {
+  mechanics::Springs springs;
   const auto between = table.index_pairs("between", scene.model.mass.size(), "particle");
   const std::size_t count = between.size();
   springs.first.reserve(count);
@@ -112,6 +113,28 @@ void read_springs(const CheckedTable& table, Scene& scene) {
                           : table.number_or_list_or("stiffness", 0.0, 0, "spring", NumberRule::nonnegative);
   springs.damping = table.number_or_list_or("damping", 0.0, count, "spring", NumberRule::nonnegative);
   read_rest_length(table, scene.position, springs);
+  return springs;
+}
+
+/// The sections [[springs]], group after group.
+void read_spring_groups(const CheckedTable& root, Scene& scene) {
+  mechanics::Springs& springs = scene.model.springs;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (const CheckedTable& table : root.tables("springs")) {
+    const mechanics::Springs group = read_spring_section(table, scene);
+    const std::string name = table.string_or("name", "");
+    for (const mechanics::SpringGroup& earlier : springs.groups) {
+      if (!name.empty() && earlier.name == name) {
+        table.fail("name", fmt::format("found \"{}\" again, expected each name once", name));
+      }
+    }
+    append(springs.first, group.first);
+    append(springs.second, group.second);
+    append(springs.stiffness, group.stiffness);
+    append(springs.damping, group.damping);
+    append(springs.rest_length, group.rest_length);
+    springs.groups.push_back({name, group.law, group.size()});
+  }
 }
 
 }  // namespace
@@ -135,7 +158,12 @@ void read_explicit_system(const CheckedTable& root, Scene& scene) {
   scene.model.mass = particles.number_or_list("mass", count, "particle", NumberRule::positive);
   read_fixed(particles, count, scene);
   read_velocity(particles, count, scene);
-  if (root.has("springs")) read_springs(root.table("springs"), scene);
+  if (!root.has("springs")) return;
+  if (root.is_table("springs")) {
+    scene.model.springs = read_spring_section(root.table("springs"), scene);
+  } else {
+    read_spring_groups(root, scene);
+  }
 }
 
 }  // namespace fw::scene

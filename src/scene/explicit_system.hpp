@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mechanics/spring_law.hpp"
+#include "mechanics/elements/spring_law.hpp"
 #include "scene/scene.hpp"
 #include "text/checked_table.hpp"
 
@@ -14,7 +14,7 @@ inline constexpr double max_spring_count = 2147483647.0;
 /// The `law` of [springs] or [generate], "hooke" by default.
 mechanics::SpringLaw read_spring_law(const CheckedTable& table);
 
-/// Reads [particles] and, if there is one, [springs].
+/// Reads [particles] and, if there are any, [springs] or the sections [[springs]].
 void read_explicit_system(const CheckedTable& root, Scene& scene);
 
 }  // namespace fw::scene

@@ -3,7 +3,6 @@
 #include "scene/attachments.hpp"
 #include "scene/explicit_system.hpp"
 #include "scene/generated_system.hpp"
-#include "text/checked_table.hpp"
 
 namespace fw::scene {
 namespace {
@@ -46,6 +45,10 @@ Scene read_scene(const std::filesystem::path& path) {
 
 Scene parse_scene(std::string_view text, std::string name) {
   return build_scene(CheckedTable::parse_text(text, std::move(name)));
+}
+
+Scene read_scene(const CheckedTable& document) {
+  return build_scene(document);
 }
 
 Vector initial_state(const Scene& scene) {

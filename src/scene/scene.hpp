@@ -8,6 +8,7 @@
 #include "core/types.hpp"
 #include "mechanics/mass_spring_model.hpp"
 #include "ode/ivp.hpp"
+#include "text/checked_table.hpp"
 
 namespace fw::scene {
 
@@ -28,6 +29,9 @@ Scene read_scene(const std::filesystem::path& path);
 /// The same for a text; `name` stands for the file in messages. The `resolved_toml` of a scene gives that
 /// scene again, bit for bit.
 Scene parse_scene(std::string_view text, std::string name);
+
+/// The same for a document that has been parsed, with numbers put into it, say.
+Scene read_scene(const CheckedTable& document);
 
 /// y = (x, v), 6n entries.
 Vector initial_state(const Scene& scene);

@@ -17,6 +17,7 @@ struct AdditiveTableau {
   std::string reference{};
 
   int stages() const { return explicit_part.stages(); }
+  bool has_embedded_solution() const { return !explicit_part.b_embedded.empty(); }
 };
 
 }  // namespace fw::schemes

@@ -20,6 +20,7 @@ struct ButcherTableau {
   std::string reference{};  ///< literature
 
   int stages() const { return static_cast<int>(b.size()); }
+  bool has_embedded_solution() const { return !b_embedded.empty(); }
 };
 
 /// The coefficients in the arithmetic S = double, Float128 or Rational.

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/types.hpp"
+#include "dense/eigenvalues.hpp"
+#include "dense/factorisations.hpp"
 #include "schemes/multistep_properties.hpp"
 #include "schemes/order_conditions.hpp"
 
@@ -57,7 +59,8 @@ class OscillatorMatrix {
 
   Propagation at(double z) const {
     const Matrix system = Matrix::Identity(s_, s_) + z * z * A_;
-    const Eigen::Matrix2d change = -z * z * (out_ * system.partialPivLu().solve(stage_));
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> stages = dense::Lu(system).solve_all(stage_);
+    const Eigen::Matrix2d change = -z * z * (out_ * stages);
     Eigen::Matrix2d m;
     m << 1.0, 1.0, 0.0, 1.0;
     m += change;
@@ -247,7 +250,7 @@ bool is_algebraically_stable(const ButcherTableau& tableau) {
       rounded(i, j) = static_cast<double>(m[static_cast<std::size_t>(i * rounded.cols() + j)]);
     }
   }
-  return Eigen::SelfAdjointEigenSolver<Matrix>(rounded).eigenvalues().minCoeff() >= -geometry_tolerance;
+  return dense::symmetric_eigen(rounded).values.minCoeff() >= -geometry_tolerance;
 }
 
 bool is_first_same_as_last(const ButcherTableau& tableau) {

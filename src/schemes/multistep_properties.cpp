@@ -1,6 +1,5 @@
 #include "schemes/multistep_properties.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/types.hpp"
+#include "dense/eigenvalues.hpp"
 
 namespace fw::schemes {
 
@@ -53,7 +53,7 @@ Roots roots(std::vector<Complex> coefficients) {
   for (Index i = 0; i < degree; ++i) {
     companion(i, degree - 1) = -coefficients[static_cast<std::size_t>(i)] / coefficients.back();
   }
-  return Eigen::ComplexEigenSolver<Eigen::MatrixXcd>(companion, false).eigenvalues();
+  return dense::eigenvalues(companion);
 }
 
 std::vector<Complex> polynomial(const CoefficientRow& row) {

@@ -23,6 +23,7 @@ struct NystromTableau {
   std::string reference{};
 
   int stages() const { return static_cast<int>(c.size()); }
+  bool has_embedded_solution() const { return !b_velocity_embedded.empty(); }
 };
 
 /// The coefficients in the arithmetic S = double, Float128 or Rational.

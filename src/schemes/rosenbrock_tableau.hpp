@@ -20,6 +20,7 @@ struct RosenbrockTableau {
   std::string reference{};
 
   int stages() const { return static_cast<int>(b.size()); }
+  bool has_embedded_solution() const { return !b_embedded.empty(); }
 };
 
 }  // namespace fw::schemes

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string_view>
 
@@ -50,18 +51,23 @@ void write_column(hid_t group, const Column& column, const std::string& where) {
 std::vector<SummaryCell> full_row(const CaseResult& result) {
   std::vector<SummaryCell> row{{"case", "", result.id}};
   for (const SummaryCell& cell : result.summary) {
-    if (cell.name == "case") throw InputError("summary column \"case\" is reserved for the id of the case");
-  }
-  row.insert(row.end(), result.summary.begin(), result.summary.end());
-  const auto add_missing = [&](const char* name, std::string text) {
-    for (const SummaryCell& cell : row) {
-      if (cell.name == name) return;
+    if (cell.name == "case" || cell.name == "verdict" || cell.name == "reason") {
+      throw InputError(fmt::format("summary column \"{}\" is written from the case itself", cell.name));
     }
-    row.push_back({name, "", std::move(text)});
-  };
-  add_missing("verdict", std::string(to_string(result.verdict)));
-  add_missing("reason", result.reason);
+  }
+  row.insert(row.end(), result.parameters.begin(), result.parameters.end());
+  row.insert(row.end(), result.summary.begin(), result.summary.end());
+  row.push_back({"verdict", "", std::string(to_string(result.verdict))});
+  row.push_back({"reason", "", result.reason});
   return row;
+}
+
+/// Says in words what stands for an integer that is not there.
+void mark_missing(Column& column) {
+  const auto* values = std::get_if<std::vector<std::int64_t>>(&column.values);
+  if (values == nullptr) return;
+  if (std::find(values->begin(), values->end(), study::missing_integer) == values->end()) return;
+  column.attributes.emplace_back("missing", fmt::format("{}", study::missing_integer));
 }
 
 void write_summary(hid_t file, const std::vector<CaseResult>& cases) {
@@ -94,7 +100,10 @@ void write_summary(hid_t file, const std::vector<CaseResult>& cases) {
           row[i].value);
     }
   }
-  for (const Column& column : columns) write_column(group, column, "summary");
+  for (Column& column : columns) {
+    mark_missing(column);
+    write_column(group, column, "summary");
+  }
 }
 
 Verdict verdict_of(const std::string& text) {
@@ -164,9 +173,11 @@ std::vector<CaseResult> read_cases(hid_t file) {
             throw LibraryError(fmt::format("summary column \"{}\" has {} rows for {} cases", column.name,
                                            values.size(), cases.size()));
           }
-          if (column.name == "case") return;
+          if (column.name == "case" || column.name == "verdict" || column.name == "reason") return;
+          const bool is_parameter = column.name.starts_with(study::parameter_prefix);
           for (std::size_t i = 0; i < values.size(); ++i) {
-            cases[i].summary.push_back({column.name, column.unit, values[i]});
+            auto& row = is_parameter ? cases[i].parameters : cases[i].summary;
+            row.push_back({column.name, column.unit, values[i]});
           }
         },
         column.values);

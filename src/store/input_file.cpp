@@ -1,35 +1,12 @@
 #include "store/input_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <system_error>
-
+#include "store/file/open_regular.hpp"
 #include "store/file/seal.hpp"
 #include "store/file_header.hpp"
 
 namespace fw::store {
-
-namespace {
-
-std::shared_ptr<DriverFile> open_regular(const std::filesystem::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) {
-    throw InputError(
-        fmt::format("cannot read \"{}\": {}", path.string(), std::generic_category().message(errno)));
-  }
-  auto file = std::make_shared<DriverFile>(descriptor);
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(fmt::format("cannot read \"{}\": it is no regular file", path.string()));
-  }
-  return file;
-}
-
-}  // namespace
 
 InputFile::InputFile(const std::filesystem::path& path) : path_(path), source_(open_regular(path)) {
   const std::string name = fmt::format("\"{}\"", path.string());

@@ -5,17 +5,8 @@
 
 namespace fw::store {
 
-/// The stored quantities of a mass-spring system, which must outlive the writer.
-inline QuantitiesOf quantities_of(const mechanics::MassSpringSystem& system) {
-  return [&system](double, ConstVectorRef q, ConstVectorRef v) {
-    const mechanics::Energies energies = system.energies(q, v);
-    return FrameQuantities{.kinetic = energies.kinetic,
-                           .elastic = energies.elastic,
-                           .gravitational = energies.gravitational,
-                           .obstacle = energies.obstacle,
-                           .linear_momentum = system.linear_momentum(v),
-                           .angular_momentum = system.angular_momentum(q, v)};
-  };
-}
+/// The stored quantities of a mass-spring system, which must outlive the writer: each of its energies as
+/// `<name>_energy`, the sums `potential_energy` and `total_energy` after the kinetic one, and the momenta.
+FrameQuantities quantities_of(const mechanics::MassSpringSystem& system);
 
 }  // namespace fw::store

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 #include "store/show_content.hpp"
@@ -72,6 +73,8 @@ std::string words(const StudySummary& summary, const std::vector<std::string>& w
           for (const T& value : values) {
             if constexpr (std::is_same_v<T, std::string>) {
               cells.push_back(value);
+            } else if (column.lacks(value)) {
+              cells.emplace_back();
             } else if constexpr (std::is_same_v<T, double>) {
               cells.push_back(number_text(value));
             } else {
@@ -143,7 +146,13 @@ void write_json(text::JsonWriter& json, const StudySummary& summary) {
     for (const record::Column& column : summary.columns) {
       std::visit(
           [&](const auto& values) {
-            if (row < values.size()) json.key(column.name).value(values[row]);
+            if (row >= values.size()) return;
+            json.key(column.name);
+            if (column.lacks(values[row])) {
+              json.value(std::numeric_limits<double>::quiet_NaN());  // null
+            } else {
+              json.value(values[row]);
+            }
           },
           column.values);
     }

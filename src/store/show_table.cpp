@@ -160,7 +160,9 @@ TextColumn text_of(const Column& column, TableFormat format) {
   text.is_text = std::holds_alternative<std::vector<std::string>>(column.values);
   std::visit(
       [&](const auto& values) {
-        for (const auto& value : values) text.cells.push_back(cell_text(value, format));
+        for (const auto& value : values) {
+          text.cells.push_back(column.lacks(value) ? std::string() : cell_text(value, format));
+        }
       },
       column.values);
   return text;

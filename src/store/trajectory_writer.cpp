@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <string>
+#include <vector>
 
 #include "store/file/output_file.hpp"
 #include "store/hdf5/extendible_dataset.hpp"
@@ -10,6 +11,41 @@
 namespace fw::store {
 
 namespace {
+
+const char* name_of(mechanics::SpringLaw law) {
+  switch (law) {
+    case mechanics::SpringLaw::hooke:
+      return "hooke";
+    case mechanics::SpringLaw::strain:
+      return "strain";
+    case mechanics::SpringLaw::tension_only:
+      return "tension_only";
+  }
+  throw InputError("law of springs: found a value outside the enumeration");
+}
+
+/// That of the springs' stiffness: newtons under the law "strain", else newtons per metre.
+const char* stiffness_unit(const mechanics::Springs& springs) {
+  bool strain = false, other = false;
+  springs.for_each_group([&](const mechanics::SpringGroup& group, std::size_t) {
+    (group.law == mechanics::SpringLaw::strain ? strain : other) = true;
+  });
+  return strain && other ? "SI" : strain ? "N" : "N/m";
+}
+
+void write_spring_groups(hid_t group, const mechanics::Springs& springs) {
+  std::vector<std::int32_t> number;
+  std::vector<std::string> law, name;
+  number.reserve(springs.size());
+  springs.for_each_group([&](const mechanics::SpringGroup& of_one_law, std::size_t) {
+    number.insert(number.end(), of_one_law.size, static_cast<std::int32_t>(law.size()));
+    law.emplace_back(name_of(of_one_law.law));
+    name.push_back(of_one_law.name);
+  });
+  write_dataset(group, "spring_group", "1", {number.size()}, std::span<const std::int32_t>(number));
+  write_dataset(group, "group_law", "", {law.size()}, std::span<const std::string>(law));
+  write_dataset(group, "group_name", "", {name.size()}, std::span<const std::string>(name));
+}
 
 void write_system(hid_t file, const mechanics::MassSpringModel& model) {
   const Handle group = make_group(file, "system");
@@ -20,14 +56,14 @@ void write_system(hid_t file, const mechanics::MassSpringModel& model) {
     between.push_back(springs.first[i]);
     between.push_back(springs.second[i]);
   }
-  const bool strain = springs.law == mechanics::SpringLaw::strain;
   write_dataset(group, "mass", "kg", {model.mass.size()}, std::span(model.mass));
   write_dataset(group, "fixed", "1", {model.fixed.size()},
                 std::span<const std::int32_t>(model.fixed.data(), model.fixed.size()));
   write_dataset(group, "springs", "1", {springs.size(), 2}, std::span<const std::int32_t>(between));
-  write_dataset(group, "stiffness", strain ? "N" : "N/m", {springs.size()}, std::span(springs.stiffness));
+  write_dataset(group, "stiffness", stiffness_unit(springs), {springs.size()}, std::span(springs.stiffness));
   write_dataset(group, "damping", "N*s/m", {springs.size()}, std::span(springs.damping));
   write_dataset(group, "rest_length", "m", {springs.size()}, std::span(springs.rest_length));
+  if (!springs.groups.empty()) write_spring_groups(group, springs);
 }
 
 void write_counters(hid_t file, const Work& work) {
@@ -54,17 +90,23 @@ struct TrajectoryWriter::Datasets {
   explicit Datasets(const std::filesystem::path& path) : file(path) {}
 
   OutputFile file;
-  ExtendibleDataset time, position, velocity, kinetic, potential, total, elastic, gravitational, obstacle,
-      linear_momentum, angular_momentum;
+  ExtendibleDataset time, position, velocity;
+  std::vector<ExtendibleDataset> quantities;
 
-  std::array<ExtendibleDataset*, 11> all() {
-    return {&time,    &position,      &velocity, &kinetic,         &potential,       &total,
-            &elastic, &gravitational, &obstacle, &linear_momentum, &angular_momentum};
+  void close() {
+    const auto end = [](ExtendibleDataset& dataset) {
+      dataset.flush();
+      dataset = ExtendibleDataset();
+    };
+    end(time);
+    end(position);
+    end(velocity);
+    for (ExtendibleDataset& dataset : quantities) end(dataset);
   }
 };
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const FileHeader& header,
-                                   const mechanics::MassSpringModel& model, QuantitiesOf quantities,
+                                   const mechanics::MassSpringModel& model, FrameQuantities quantities,
                                    Index expected_frames)
     : quantities_(std::move(quantities)), particles_(static_cast<Index>(model.mass.size())) {
   const LibraryLock lock;
@@ -78,21 +120,17 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const File
     const Handle group = make_group(d.file.id(), "trajectory");
     const auto frames = static_cast<hsize_t>(std::max<Index>(expected_frames, 1));
     const auto n = static_cast<hsize_t>(particles_);
-    const auto make = [&](ExtendibleDataset& dataset, const char* name, const char* unit,
-                          const Shape& entry) {
-      dataset = ExtendibleDataset(group, name, unit, entry, frames);
-    };
-    make(d.time, "time", "s", {});
-    make(d.position, "position", "m", {n, 3});
-    make(d.velocity, "velocity", "m/s", {n, 3});
-    make(d.kinetic, "kinetic_energy", "J", {});
-    make(d.potential, "potential_energy", "J", {});
-    make(d.total, "total_energy", "J", {});
-    make(d.elastic, "elastic_energy", "J", {});
-    make(d.gravitational, "gravitational_energy", "J", {});
-    make(d.obstacle, "obstacle_energy", "J", {});
-    make(d.linear_momentum, "linear_momentum", "kg*m/s", {3});
-    make(d.angular_momentum, "angular_momentum", "kg*m^2/s", {3});
+    d.time = ExtendibleDataset(group, "time", "s", {}, frames);
+    d.position = ExtendibleDataset(group, "position", "m", {n, 3}, frames);
+    d.velocity = ExtendibleDataset(group, "velocity", "m/s", {n, 3}, frames);
+    std::size_t components = 0;
+    for (const FrameQuantity& quantity : quantities_.list) {
+      const Shape entry =
+          quantity.components == 1 ? Shape{} : Shape{static_cast<hsize_t>(quantity.components)};
+      d.quantities.emplace_back(group, quantity.name.c_str(), quantity.unit.c_str(), entry, frames);
+      components += static_cast<std::size_t>(quantity.components);
+    }
+    values_.resize(components);
   });
 }
 
@@ -109,29 +147,21 @@ void TrajectoryWriter::frame(double time, ConstVectorRef state) {
                                  6 * particles_, state.size()));
   }
   const auto q = state.head(3 * particles_), v = state.tail(3 * particles_);
-  const FrameQuantities quantities = quantities_(time, q, v);
-  const double potential = quantities.elastic + quantities.gravitational + quantities.obstacle;
+  quantities_.evaluate(time, q, v, values_);
 
   const LibraryLock lock;
   Datasets& d = *datasets_;
-  const auto number = [](ExtendibleDataset& dataset, const double& value) { dataset.append({&value, 1}); };
-  const auto vector = [](ExtendibleDataset& dataset, const Vec3<double>& a) {
-    const std::array<double, 3> entries{a.x, a.y, a.z};
-    dataset.append(entries);
-  };
   const auto size = static_cast<std::size_t>(3 * particles_);
   d.file.guarded([&] {
-    number(d.time, time);
+    d.time.append({&time, 1});
     d.position.append({state.data(), size});
     d.velocity.append({state.data() + size, size});
-    number(d.kinetic, quantities.kinetic);
-    number(d.potential, potential);
-    number(d.total, quantities.kinetic + potential);
-    number(d.elastic, quantities.elastic);
-    number(d.gravitational, quantities.gravitational);
-    number(d.obstacle, quantities.obstacle);
-    vector(d.linear_momentum, quantities.linear_momentum);
-    vector(d.angular_momentum, quantities.angular_momentum);
+    std::span<const double> rest(values_);
+    for (std::size_t k = 0; k < d.quantities.size(); ++k) {
+      const auto components = static_cast<std::size_t>(quantities_.list[k].components);
+      d.quantities[k].append(rest.first(components));
+      rest = rest.subspan(components);
+    }
   });
 }
 
@@ -141,10 +171,7 @@ void TrajectoryWriter::finish(const Status& status, const Work& work) {
   // Whatever happens below, nothing but the published file remains.
   const std::unique_ptr<Datasets> d = std::move(datasets_);
   d->file.guarded([&] {
-    for (ExtendibleDataset* dataset : d->all()) {
-      dataset->flush();
-      *dataset = ExtendibleDataset();
-    }
+    d->close();
     write_counters(d->file.id(), work);
     write_attribute(d->file.id(), "solver_status", status.describe());
     write_status(d->file.id(), status.ok());

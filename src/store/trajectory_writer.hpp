@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/status.hpp"
-#include "core/vec3.hpp"
 #include "core/work.hpp"
 #include "mechanics/mass_spring_model.hpp"
 #include "record/frame_sink.hpp"
@@ -13,18 +15,19 @@
 
 namespace fw::store {
 
-/// What is stored of a frame besides its state.
-struct FrameQuantities {
-  double kinetic = 0.0;             ///< [J]
-  double elastic = 0.0;             ///< springs and anchors [J]
-  double gravitational = 0.0;       ///< [J]
-  double obstacle = 0.0;            ///< penalty energy [J]
-  Vec3<double> linear_momentum{};   ///< [kg·m/s]
-  Vec3<double> angular_momentum{};  ///< about the origin [kg·m²/s]
+/// A number or vector that is stored of each frame besides its state.
+struct FrameQuantity {
+  std::string name;  ///< of the dataset
+  std::string unit;
+  int components = 1;  ///< 1 for a number
 };
 
-/// The quantities of the state (t, q, v).
-using QuantitiesOf = std::function<FrameQuantities(double t, ConstVectorRef q, ConstVectorRef v)>;
+/// The quantities of a frame, in the order of the datasets.
+struct FrameQuantities {
+  std::vector<FrameQuantity> list;
+  /// Writes their components at (t, q, v), one quantity after the other.
+  std::function<void(double t, ConstVectorRef q, ConstVectorRef v, std::span<double> values)> evaluate;
+};
 
 /// Streams a trajectory of a mass-spring system into a result file of kind "trajectory". Memory is bounded by
 /// a few megabytes whatever the number of frames and particles. The file appears under its name when `finish`
@@ -33,7 +36,8 @@ class TrajectoryWriter final : public record::FrameSink {
  public:
   /// `expected_frames` only sets the size of the chunks. `header.kind` is ignored. Throws SystemError.
   TrajectoryWriter(const std::filesystem::path& path, const FileHeader& header,
-                   const mechanics::MassSpringModel& model, QuantitiesOf quantities, Index expected_frames);
+                   const mechanics::MassSpringModel& model, FrameQuantities quantities,
+                   Index expected_frames);
   ~TrajectoryWriter() override;
 
   /// Appends a frame; `state` has 6n entries. Throws SystemError (disk full), InputError (wrong size, or the
@@ -47,7 +51,8 @@ class TrajectoryWriter final : public record::FrameSink {
  private:
   struct Datasets;
   std::unique_ptr<Datasets> datasets_;
-  QuantitiesOf quantities_;
+  FrameQuantities quantities_;
+  std::vector<double> values_;  ///< of the quantities of a frame
   Index particles_;
 };
 

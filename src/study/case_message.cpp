@@ -124,6 +124,7 @@ std::string encode(const CaseResult& result) {
   out.add(result.key);
   out.add(result.columns);
   out.add(result.summary);
+  out.add(result.parameters);
   out.add(static_cast<std::uint8_t>(result.verdict));
   out.add(result.reason);
   return out.take();
@@ -137,6 +138,7 @@ CaseResult decode(std::string_view bytes) {
   in.read(result.key);
   in.read(result.columns);
   in.read(result.summary);
+  in.read(result.parameters);
   in.read(verdict);
   in.read(result.reason);
   if (verdict > static_cast<std::uint8_t>(Verdict::not_applicable) || !in.at_end()) {

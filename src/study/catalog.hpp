@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/theory/oscillator_amplification.hpp"
-#include "analysis/theory/scheme_growth.hpp"
+#include "analysis/theory/method_theory.hpp"
 #include "ode/integrator.hpp"
 #include "problems/problem_entry.hpp"
-#include "schemes/scheme_data.hpp"
 
 namespace fw::study {
 
@@ -23,23 +21,12 @@ class Catalog {
   /// InputError for an unknown name (with the nearest one) or option.
   virtual std::unique_ptr<Integrator> method(const std::string& call) const = 0;
 
-  /// The coefficients that define the scheme of a call; std::monostate where it is not given by any, or where
-  /// an option changes what the scheme is.
-  virtual schemes::SchemeData scheme_data(const std::string& call) const = 0;
+  /// What theory says of the method of a call with its options: coefficients, what it is on linear systems,
+  /// its modified energy. Throws as `method` does.
+  virtual analysis::Theory theory(const std::string& call) const = 0;
 
   /// The names of all methods, in the order of the list.
   virtual std::vector<std::string> method_names() const = 0;
-
-  /// The coefficients of the method of a call, or of the scheme that it is on forces f(q) (`verlet` is
-  /// velocity Verlet); std::monostate where it is not given by coefficients.
-  virtual schemes::SchemeData equivalent_scheme(const std::string& call) const = 0;
-
-  /// What the method of a call is on linear systems, damped or not, by coefficients or a rule from the
-  /// literature; neither where nothing but its own steps would tell.
-  virtual analysis::LinearScheme linear_scheme(const std::string& call) const { return {scheme_data(call)}; }
-
-  /// What theory says of the method of a call on linear oscillators; empty where it says nothing.
-  virtual analysis::AmplificationFactors oscillator_theory(const std::string& call) const = 0;
 
   /// The problem of that name. Throws InputError for an unknown name, parameter or value.
   virtual Problem problem(const std::string& name, const ProblemParameters& parameters) const = 0;

@@ -83,11 +83,16 @@ class Comparing {
 
  private:
   void summaries(const CaseResult& before, const CaseResult& after) {
-    for (const SummaryCell& cell : before.summary) {
-      if (cell.name == "verdict" || cell.name == "reason") continue;
-      const auto found = std::find_if(after.summary.begin(), after.summary.end(),
+    compare_rows(before, before.parameters, after.parameters);
+    compare_rows(before, before.summary, after.summary);
+  }
+
+  void compare_rows(const CaseResult& before, const std::vector<SummaryCell>& old_row,
+                    const std::vector<SummaryCell>& new_row) {
+    for (const SummaryCell& cell : old_row) {
+      const auto found = std::find_if(new_row.begin(), new_row.end(),
                                       [&](const SummaryCell& other) { return other.name == cell.name; });
-      if (found == after.summary.end()) {
+      if (found == new_row.end()) {
         note(before.id, "summary/" + cell.name, "is missing now");
         continue;
       }

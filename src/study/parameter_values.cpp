@@ -5,32 +5,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "settings/sequence.hpp"
+
 namespace fw::study {
 
-namespace {
-
-std::vector<double> geometric_sequence(const CheckedTable& section) {
-  const double from = section.positive_number("from"), to = section.positive_number("to");
-  const std::int64_t count = section.integer("count", 2, 10'000);
-  std::vector<double> values;
-  for (std::int64_t k = 0; k < count; ++k) {
-    values.push_back(from * std::pow(to / from, static_cast<double>(k) / static_cast<double>(count - 1)));
-  }
-  values.back() = to;
-  return values;
+void declare(settings::Archive& a, ParameterValues& values) {
+  using settings::setting;
+  a.one_of({{"values", [&] { a(setting("values", values.values).not_empty().doc("the numbers")); }},
+            {"from", [&] { declare_sequence(a, values); }}});
 }
 
-}  // namespace
+void declare_sequence(settings::Archive& a, ParameterValues& values) {
+  using settings::setting;
+  a(setting("from", values.from).positive().doc("first of a geometric sequence"));
+  a(setting("to", values.to).required().positive().doc("last of it"));
+  a(setting("count", values.count).required().integers(2, 10'000).doc("how many numbers"));
+}
 
-std::vector<double> read_parameter_values(const CheckedTable& section) {
-  const bool is_list = section.has("values");
-  std::vector<double> values = is_list ? section.numbers("values") : geometric_sequence(section);
-  if (values.empty()) section.fail("values", "found an empty list, expected at least one number");
+std::vector<double> sequence_of(const ParameterValues& given) {
+  if (given.values) return *given.values;
+  return settings::geometric_sequence(*given.from, *given.to, *given.count);
+}
+
+std::vector<double> sorted_values(const ParameterValues& given, const CheckedTable& section) {
+  std::vector<double> values = sequence_of(given);
   std::stable_sort(values.begin(), values.end(),
                    [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (std::size_t k = 1; k < values.size(); ++k) {
     if (std::count(values.begin(), values.end(), values[k]) > 1) {
-      section.fail(is_list ? "values" : "to",
+      section.fail(given.values ? "values" : "to",
                    fmt::format("found {} twice, expected different numbers", values[k]));
     }
   }

@@ -9,6 +9,30 @@
 
 namespace fw::study {
 
+Solution RunContext::solve(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
+                           Observer& observer) const {
+  Solution solution = integrator.solve(ivp, control, observer, {.stop = stop});
+  if (solution.status.code == StatusCode::interrupted) throw Interrupted{};
+  return solution;
+}
+
+void RunContext::check() const {
+  if (stop.stop_requested()) throw Interrupted{};
+}
+
+void declare(settings::Archive& a, StudyHeader& header) {
+  using settings::setting;
+  a(setting("kind", header.kind).required().choices({header.kind}).doc("the kind of study"));
+  a(setting("title", header.title).required().doc("for people"));
+  a(setting("seed", header.seed)
+        .at_least(0)
+        .doc("of all random numbers of the study; stored with the result"));
+  a(setting("time_limit", header.time_limit)
+        .nonnegative()
+        .unit("s")
+        .doc("time after which a case is ended; 0: never"));
+}
+
 Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
                bool quick) {
   std::vector<std::string> names;
@@ -16,14 +40,12 @@ Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, co
   for (const StudyKind& kind : kinds) names.push_back(kind.name);
   Plan plan;
   plan.kind = spec.choice("kind", names);
-  plan.title = spec.string("title");
   plan.quick = quick;
-  plan.seed = spec.integer_or("seed", 0, 0);
-  plan.time_limit = spec.number_or("time_limit", 0.0, NumberRule::nonnegative);
   for (const StudyKind& kind : kinds) {
-    if (kind.name == plan.kind) kind.read(spec, catalog, quick, plan);
+    if (kind.name != plan.kind) continue;
+    plan.summary = kind.summary;
+    kind.read(spec, catalog, quick, plan);
   }
-  spec.finish();
   std::set<std::string> ids;
   for (const PlannedCase& planned : plan.cases) {
     if (!ids.insert(planned.id).second) {
@@ -31,7 +53,6 @@ Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, co
                                    spec.source_name(), planned.id));
     }
   }
-  plan.spec = spec.to_toml_text();
   return plan;
 }
 

@@ -20,14 +20,6 @@ namespace fw::study {
 
 namespace {
 
-ProblemParameters read_parameters(const CheckedTable& section) {
-  ProblemParameters parameters;
-  if (!section.has("parameters")) return parameters;
-  const CheckedTable table = section.table("parameters");
-  for (const std::string& name : table.keys()) parameters[name] = table.number(name);
-  return parameters;
-}
-
 std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpringSystem>& system) {
   const Index n = system->degrees_of_freedom();
   return {{"energy", "J",
@@ -36,44 +28,24 @@ std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpri
 
 /// The scene as a problem on [0, t_end].
 Problem problem_from_scene(scene::Scene scene, const std::string& name, double t_end) {
-  const bool has_kinks =
-      scene.model.springs.law == mechanics::SpringLaw::tension_only || !scene.model.obstacles.empty();
   Problem problem;
   problem.name = name;
   problem.title = scene.title;
-  problem.is_smooth = !has_kinks;
   problem.ivp.y0 = initial_state(scene);
   problem.ivp.t1 = t_end;
   auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
+  problem.is_smooth = !system->elements().has_kinks();
   if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
   problem.ivp.system = std::move(system);
   return problem;
 }
 
 /// A scene as a study names it: the file, or what a result file keeps of it.
-struct SceneText {
-  std::string name;  ///< for messages
-  std::string text;
-};
-
-SceneText scene_text_of(const CheckedTable& section) {
-  const std::filesystem::path path =
-      std::filesystem::path(section.source_name()).parent_path() / section.string("scene");
-  const std::string kept = section.has("scene_text") ? section.string("scene_text") : "";
-  if (!kept.empty()) return {fmt::format("{} (scene_text)", section.string("scene")), kept};
-  return {path.string(), scene::read_scene(path).resolved_toml};
-}
-
-/// The values of a table [problem.set], whose keys are those of the scene file.
-void collect(const CheckedTable& table, const std::string& path, std::vector<TomlAssignment>& assignments) {
-  for (const std::string& key : table.keys()) {
-    const std::string full = path.empty() ? key : path + "." + key;
-    if (table.is_table(key)) {
-      collect(table.table(key), full, assignments);
-      continue;
-    }
-    assignments.push_back({full, table.number(key)});
+scene::Scene scene_of(const ProblemSpec& spec, const CheckedTable& section) {
+  if (spec.scene_text && !spec.scene_text->empty()) {
+    return scene::parse_scene(*spec.scene_text, *spec.scene + " (scene_text)");
   }
+  return scene::read_scene(std::filesystem::path(section.source_name()).parent_path() / *spec.scene);
 }
 
 /// The number that a member of a family has in place of the problem's own.
@@ -82,54 +54,98 @@ struct Variation {
   double value = 0.0;
 };
 
-StudyProblem read_problem(const CheckedTable& section, const Catalog& catalog,
-                          std::vector<std::string>& warnings,
-                          const std::optional<Variation>& variation = {}) {
-  StudyProblem entry;
-  if (section.has("scene") == section.has("name")) {
-    throw InputError(fmt::format("{}: found {} of \"name\" and \"scene\", expected exactly one",
-                                 section.where(), section.has("name") ? "both" : "none"));
+/// The numbers that a study puts into a scene.
+std::vector<TomlAssignment> assignments_of(const ProblemSpec& spec,
+                                           const std::optional<Variation>& variation) {
+  std::vector<TomlAssignment> assignments;
+  for (const auto& [path, number] : spec.set.value_or(NumberTable())) assignments.push_back({path, number});
+  if (variation) assignments.push_back({variation->parameter, variation->value});
+  return assignments;
+}
+
+/// One section [[problem]] while its problem is made, or the members of its family.
+class ProblemMaker {
+ public:
+  ProblemMaker(const ProblemSpec& spec, CheckedTable section, const Catalog& catalog,
+               std::vector<std::string>& warnings)
+      : spec_(spec), section_(std::move(section)), catalog_(catalog), warnings_(warnings) {}
+
+  StudyProblem make(const std::optional<Variation>& variation = {}) {
+    StudyProblem entry = spec_.scene ? from_scene(variation) : from_catalogue(variation);
+    const Ivp& ivp = entry.problem.ivp;
+    entry.identity += fmt::format("\nt0 = {}\nt1 = {}\n", ivp.t0, ivp.t1);
+    return entry;
   }
-  if (section.has("scene")) {
-    const double t_end = section.positive_number("t_end");
-    const std::string stem = std::filesystem::path(section.string("scene")).stem().string();
+
+  /// Puts what was worked out into the resolved section.
+  void complete(TomlTree resolved, const StudyProblem& made) const {
+    const auto add = [&resolved](const char* key, const TomlValue& value) {
+      if (!resolved.has(key)) resolved.set(key, value);
+    };
+    add("label", made.label);
+    add("t_end", made.problem.ivp.t1);
+    if (base_) add("scene_text", base_->resolved_toml);
+  }
+
+ private:
+  StudyProblem from_scene(const std::optional<Variation>& variation) {
+    StudyProblem entry;
+    const std::string stem = std::filesystem::path(*spec_.scene).stem().string();
     try {
-      SceneText given = scene_text_of(section);
-      const std::string& kept = section.string_or("scene_text", given.text);
-      std::vector<TomlAssignment> assignments;
-      if (section.has("set")) collect(section.table("set"), "", assignments);
-      if (variation) assignments.push_back({variation->parameter, variation->value});
-      if (!assignments.empty()) given.text = toml_with(kept, given.name, assignments);
-      for (const TomlAssignment& assignment : assignments) given.name += " with " + assignment.text();
-      scene::Scene scene = scene::parse_scene(given.text, given.name);
-      warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
+      if (!base_) base_ = scene_of(spec_, section_);
+      scene::Scene scene = changed(assignments_of(spec_, variation));
+      warnings_.insert(warnings_.end(), scene.warnings.begin(), scene.warnings.end());
       entry.scene_toml = scene.resolved_toml;
-      entry.problem = problem_from_scene(std::move(scene), stem, t_end);
+      entry.problem = problem_from_scene(std::move(scene), stem, *spec_.t_end);
     } catch (const InputError& error) {
-      section.fail("scene", error.what());
+      section_.fail("scene", error.what());
     }
-    entry.label = section.string_or("label", stem);
+    entry.label = spec_.label.value_or(stem);
     entry.identity = entry.scene_toml;
-  } else {
-    const std::string name = section.string("name");
-    ProblemParameters parameters = read_parameters(section);
+    return entry;
+  }
+
+  /// The scene with these numbers in it.
+  scene::Scene changed(const std::vector<TomlAssignment>& assignments) const {
+    if (assignments.empty()) return *base_;
+    std::string name = base_name();
+    for (const TomlAssignment& assignment : assignments) name += " with " + assignment.text();
+    const std::string& text =
+        spec_.scene_text && !spec_.scene_text->empty() ? *spec_.scene_text : base_->resolved_toml;
+    return scene::read_scene(CheckedTable::parse_text(text, base_name()).with(assignments, name));
+  }
+
+  std::string base_name() const {
+    if (spec_.scene_text && !spec_.scene_text->empty()) return *spec_.scene + " (scene_text)";
+    return (std::filesystem::path(section_.source_name()).parent_path() / *spec_.scene).string();
+  }
+
+  StudyProblem from_catalogue(const std::optional<Variation>& variation) const {
+    StudyProblem entry;
+    ProblemParameters parameters;
+    for (const auto& [name, value] : spec_.parameters.value_or(NumberTable())) parameters[name] = value;
     if (variation) parameters[variation->parameter] = variation->value;
     try {
-      entry.problem = catalog.problem(name, parameters);
+      entry.problem = catalog_.problem(*spec_.name, parameters);
     } catch (const InputError& error) {
-      section.fail("name", error.what());
+      section_.fail("name", error.what());
     }
-    entry.problem.ivp.t1 = section.number_or("t_end", entry.problem.ivp.t1);
-    if (entry.problem.ivp.t1 <= entry.problem.ivp.t0) {
-      section.fail("t_end", fmt::format("found {}, expected more than the start {}", entry.problem.ivp.t1,
-                                        entry.problem.ivp.t0));
+    Ivp& ivp = entry.problem.ivp;
+    ivp.t1 = spec_.t_end.value_or(ivp.t1);
+    if (ivp.t1 <= ivp.t0) {
+      section_.fail("t_end", fmt::format("found {}, expected more than the start {}", ivp.t1, ivp.t0));
     }
-    entry.label = section.string_or("label", name);
-    entry.identity = fmt::format("problem = {}\nparameters = {}\n", name, entry.problem.parameters);
+    entry.label = spec_.label.value_or(*spec_.name);
+    entry.identity = fmt::format("problem = {}\nparameters = {}\n", *spec_.name, entry.problem.parameters);
+    return entry;
   }
-  entry.identity += fmt::format("\nt0 = {}\nt1 = {}\n", entry.problem.ivp.t0, entry.problem.ivp.t1);
-  return entry;
-}
+
+  const ProblemSpec& spec_;
+  CheckedTable section_;
+  const Catalog& catalog_;
+  std::vector<std::string>& warnings_;
+  std::optional<scene::Scene> base_;
+};
 
 /// Options in PETSc's notation are known to be wrong only when they are used: a few steps of a small system.
 /// PETSc and MPI are started for that in a process of their own, since workers are forked from this one. The
@@ -196,69 +212,130 @@ std::vector<std::string> expand(const CheckedTable& spec, const std::string& key
 
 }  // namespace
 
-std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog,
+void declare(settings::Archive& a, ProblemSpec& problem) {
+  using settings::setting;
+  a.one_of(
+      {{"name",
+        [&] {
+          a(setting("name", problem.name).names_of("problems").doc("a problem of `federwerk list problems`"));
+          a(setting("parameters", problem.parameters)
+                .default_text("`{}`")
+                .doc("those that `federwerk describe NAME` lists; the others keep their defaults"));
+          a(setting("t_end", problem.t_end)
+                .positive()
+                .unit("s")
+                .default_text("the problem's own")
+                .doc("end time; every problem starts at 0"));
+        }},
+       {"scene", [&] {
+          a(setting("scene", problem.scene).doc("a scene file, relative to the study file"));
+          a(setting("scene_text", problem.scene_text)
+                .default_text("the text of `scene`")
+                .doc("the scene itself, which goes before the file; a result file keeps it in its `spec`"));
+          a(setting("set", problem.set)
+                .default_text("`{}`")
+                .doc("numbers to replace in it, `set = { springs = { damping = 0.0 } }`"));
+          a(setting("t_end", problem.t_end).required().positive().unit("s").doc("end time"));
+        }}});
+  a(setting("label", problem.label)
+        .default_text("the name; the scene's file name without `.toml`")
+        .doc("for tables and names of cases"));
+}
+
+void declare(settings::Archive& a, VariedParameter& vary) {
+  a(settings::setting("parameter", vary.parameter)
+        .required()
+        .doc("the name of a parameter, or the path of a number in the scene file, `springs.stiffness`"));
+  declare(a, vary.values);
+}
+
+void declare(settings::Archive& a, FamilySpec& family) {
+  declare(a, family.problem);
+  a.optional_section({"vary", "One number that takes several values, which makes a family."}, family.vary);
+}
+
+std::vector<StudyProblem> make_problems(const std::vector<ProblemSpec>& specs, const StudyInput& input,
                                         std::vector<std::string>& warnings) {
   std::vector<StudyProblem> problems;
-  for (const CheckedTable& section : spec.tables("problem"))
-    problems.push_back(read_problem(section, catalog, warnings));
-  if (problems.empty()) {
-    throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
+  const std::vector<CheckedTable> sections = input.file.tables("problem");
+  for (std::size_t k = 0; k < specs.size(); ++k) {
+    ProblemMaker maker(specs[k], sections[k], input.catalog, warnings);
+    problems.push_back(maker.make());
+    maker.complete(TomlTree(input.resolved).table("problem", k), problems.back());
   }
   return problems;
 }
 
-std::vector<ProblemFamily> read_problem_families(const CheckedTable& spec, const Catalog& catalog,
-                                                 std::vector<std::string>& warnings) {
+std::vector<ProblemFamily> make_families(const std::vector<FamilySpec>& specs, const StudyInput& input,
+                                         std::vector<std::string>& warnings) {
   std::vector<ProblemFamily> families;
-  for (const CheckedTable& section : spec.tables("problem")) {
+  const std::vector<CheckedTable> sections = input.file.tables("problem");
+  for (std::size_t k = 0; k < specs.size(); ++k) {
     ProblemFamily& family = families.emplace_back();
-    if (!section.has("vary")) {
-      family.members.push_back(read_problem(section, catalog, warnings));
-      family.label = family.members.front().label;
-      family.values.push_back(std::numeric_limits<double>::quiet_NaN());
+    ProblemMaker maker(specs[k].problem, sections[k], input.catalog, warnings);
+    if (specs[k].vary) {
+      const VariedParameter& vary = *specs[k].vary;
+      family.parameter = vary.parameter;
+      family.values = sorted_values(vary.values, sections[k].table("vary"));
+      const std::string key = family.parameter.substr(family.parameter.find_last_of('.') + 1);
+      for (const double value : family.values) {
+        StudyProblem& member = family.members.emplace_back(maker.make(Variation{family.parameter, value}));
+        if (family.label.empty()) {
+          family.label = member.label;
+          maker.complete(TomlTree(input.resolved).table("problem", k), member);
+        }
+        member.label += fmt::format("-{}={:.6g}", key, value);
+      }
       continue;
     }
-    const CheckedTable vary = section.table("vary");
-    family.parameter = vary.string("parameter");
-    family.values = read_parameter_values(vary);
-    const std::string key = family.parameter.substr(family.parameter.find_last_of('.') + 1);
-    for (const double value : family.values) {
-      StudyProblem& member = family.members.emplace_back(
-          read_problem(section, catalog, warnings, Variation{family.parameter, value}));
-      family.label = member.label;
-      member.label += fmt::format("-{}={:.6g}", key, value);
-    }
-  }
-  if (families.empty()) {
-    throw InputError(fmt::format("{}: found no [[problem]], expected at least one", spec.source_name()));
+    family.members.push_back(maker.make());
+    family.label = family.members.front().label;
+    family.values.push_back(std::numeric_limits<double>::quiet_NaN());
+    maker.complete(TomlTree(input.resolved).table("problem", k), family.members.front());
   }
   return families;
 }
 
-std::vector<std::string> read_method_patterns(const CheckedTable& spec, const Catalog& catalog) {
-  std::vector<std::string> methods;
-  const std::vector<std::string> wanted = spec.strings("methods");
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    for (const std::string& call : expand(spec, "methods", i, wanted[i], catalog)) {
-      if (std::find(methods.begin(), methods.end(), call) == methods.end()) methods.push_back(call);
-    }
-  }
-  const std::vector<std::string> unwanted = spec.strings_or("without", {});
-  for (std::size_t i = 0; i < unwanted.size(); ++i) {
-    for (const std::string& call : expand(spec, "without", i, unwanted[i], catalog)) {
-      if (std::erase(methods, call) == 0) {
-        spec.fail("without", {i}, fmt::format("found \"{}\", which is not among the methods", call));
-      }
-    }
-  }
-  if (methods.empty()) spec.fail("methods", "found no method, expected at least one");
+settings::Setting methods_setting(std::vector<std::string>& methods) {
+  return settings::setting("methods", methods)
+      .required()
+      .not_empty()
+      .names_of("methods")
+      .doc(
+          "names of `federwerk list methods`, with options in brackets: "
+          "`\"implicit_euler_linearised[linear_solver=lu,tangent=psd_projection]\"`");
+}
+
+const std::vector<std::string>& checked_methods(const std::vector<std::string>& methods,
+                                                const CheckedTable& section, const Catalog& catalog) {
+  for (std::size_t i = 0; i < methods.size(); ++i) check_call(section, "methods", i, methods[i], catalog);
   return methods;
 }
 
-std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog) {
-  std::vector<std::string> methods = spec.strings("methods");
-  if (methods.empty()) spec.fail("methods", "found an empty list, expected at least one method");
-  for (std::size_t i = 0; i < methods.size(); ++i) check_call(spec, "methods", i, methods[i], catalog);
+void declare(settings::Archive& a, MethodPatterns& patterns) {
+  a(methods_setting(patterns.methods)
+        .doc("as everywhere, or patterns: `\"*\"` is every method, `\"sundials:*\"` all of a library"));
+  a(settings::setting("without", patterns.without)
+        .names_of("methods")
+        .doc("methods or patterns that are taken out again"));
+}
+
+std::vector<std::string> expanded(const MethodPatterns& patterns, const StudyInput& input) {
+  const CheckedTable& file = input.file;
+  std::vector<std::string> methods;
+  for (std::size_t i = 0; i < patterns.methods.size(); ++i) {
+    for (const std::string& call : expand(file, "methods", i, patterns.methods[i], input.catalog)) {
+      if (std::find(methods.begin(), methods.end(), call) == methods.end()) methods.push_back(call);
+    }
+  }
+  for (std::size_t i = 0; i < patterns.without.size(); ++i) {
+    for (const std::string& call : expand(file, "without", i, patterns.without[i], input.catalog)) {
+      if (std::erase(methods, call) == 0) {
+        file.fail("without", {i}, fmt::format("found \"{}\", which is not among the methods", call));
+      }
+    }
+  }
+  if (methods.empty()) file.fail("methods", "found no method, expected at least one");
   return methods;
 }
 

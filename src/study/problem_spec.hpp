@@ -1,13 +1,41 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "problems/problem.hpp"
-#include "study/catalog.hpp"
-#include "text/checked_table.hpp"
+#include "study/parameter_values.hpp"
+#include "study/plan.hpp"
 
 namespace fw::study {
+
+/// One section [[problem]]: a problem of the catalogue by `name`, or a scene.
+struct ProblemSpec {
+  std::optional<std::string> name;
+  std::optional<NumberTable> parameters;
+  std::optional<std::string> scene;       ///< a path relative to the study file
+  std::optional<std::string> scene_text;  ///< what a result file keeps of it; goes before the file
+  std::optional<NumberTable> set;         ///< numbers to replace in the scene, by their paths
+  std::optional<double> t_end;            ///< [s]
+  std::optional<std::string> label;
+};
+void declare(settings::Archive& a, ProblemSpec& problem);
+
+/// One number of a problem that takes several values: of a catalogue problem the name of a parameter; of a
+/// scene the path of a number in its file, such as "springs.stiffness" or "generate.damping".
+struct VariedParameter {
+  std::string parameter;
+  ParameterValues values;
+};
+void declare(settings::Archive& a, VariedParameter& vary);
+
+/// A [[problem]] that may be a family.
+struct FamilySpec {
+  ProblemSpec problem;
+  std::optional<VariedParameter> vary;
+};
+void declare(settings::Archive& a, FamilySpec& family);
 
 /// A problem as a study names it.
 struct StudyProblem {
@@ -17,11 +45,14 @@ struct StudyProblem {
   std::string scene_toml;  ///< the resolved scene; empty for a problem of the catalogue
 };
 
-/// Reads the [[problem]] sections: `name` (with `parameters = { … }`) or `scene` (a path relative to the
-/// study file, then `t_end` is required), `t_end`, `label`. The resolved specification holds the scene's own
-/// text as `scene_text`, which goes before the file. Throws InputError. `warnings` gains what a scene says
+/// The sections [[problem]] of a kind that needs at least one.
+inline const settings::SectionInfo problem_sections{
+    .name = "problem", .doc = "A problem of the catalogue, or a scene.", .is_required = true};
+
+/// Makes the problems of the [[problem]] sections. The resolved specification gains their end times and
+/// labels and the scene's own text as `scene_text`. Throws InputError. `warnings` gains what a scene says
 /// without effect.
-std::vector<StudyProblem> read_problems(const CheckedTable& spec, const Catalog& catalog,
+std::vector<StudyProblem> make_problems(const std::vector<ProblemSpec>& specs, const StudyInput& input,
                                         std::vector<std::string>& warnings);
 
 /// The same problem with one of its numbers varied.
@@ -32,18 +63,24 @@ struct ProblemFamily {
   std::vector<StudyProblem> members;  ///< one per value, labelled `<label>-<last key>=<value>`
 };
 
-/// Reads the [[problem]] sections like `read_problems`, each with an optional table
-/// `vary = { parameter = "stiffness", values = […] }` (or `from`, `to`, `count` for a geometric sequence). Of
-/// a catalogue problem `parameter` is the name of a parameter; of a scene it is the path of a number in its
-/// file, such as "springs.stiffness" or "generate.damping". Throws InputError.
-std::vector<ProblemFamily> read_problem_families(const CheckedTable& spec, const Catalog& catalog,
-                                                 std::vector<std::string>& warnings);
+/// Makes the families of the [[problem]] sections, like `make_problems`.
+std::vector<ProblemFamily> make_families(const std::vector<FamilySpec>& specs, const StudyInput& input,
+                                         std::vector<std::string>& warnings);
 
-/// Checks the calls of `methods` and returns them. Throws InputError that names the entry.
-std::vector<std::string> read_methods(const CheckedTable& spec, const Catalog& catalog);
+/// The key `methods`: calls of methods, at least one.
+settings::Setting methods_setting(std::vector<std::string>& methods);
 
-/// The same where a call may be a pattern such as "sundials:*" or "*" (every method), in the order of the
-/// list; the calls or patterns of the key `without` are left out again.
-std::vector<std::string> read_method_patterns(const CheckedTable& spec, const Catalog& catalog);
+/// Checks the calls of `methods` in `section` and returns them. Throws InputError that names the entry.
+const std::vector<std::string>& checked_methods(const std::vector<std::string>& methods,
+                                                const CheckedTable& section, const Catalog& catalog);
+
+/// Methods where a call may be a pattern such as "sundials:*" or "*" (every method).
+struct MethodPatterns {
+  std::vector<std::string> methods, without;
+};
+void declare(settings::Archive& a, MethodPatterns& patterns);
+
+/// The calls that fit, in the order of the list, those of `without` left out. Throws InputError.
+std::vector<std::string> expanded(const MethodPatterns& patterns, const StudyInput& input);
 
 }  // namespace fw::study

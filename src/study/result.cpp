@@ -7,18 +7,6 @@
 
 namespace fw::study {
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::holds:
-      return "holds";
-    case Verdict::fails:
-      return "fails";
-    case Verdict::not_applicable:
-      return "not applicable";
-  }
-  return "not applicable";
-}
-
 namespace {
 
 /// The member of that name, in a constant or a mutable list.
@@ -62,9 +50,33 @@ void replace_column(CaseResult& result, Column column) {
   }
 }
 
-void replace_cell(CaseResult& result, std::string_view name,
-                  std::variant<double, std::int64_t, std::string> value) {
+void replace_cell(CaseResult& result, std::string_view name, CellValue value) {
   named(result.summary, result.id, name).value = std::move(value);
+}
+
+std::string row_mismatch(const std::vector<SummaryColumn>& columns, const std::vector<SummaryCell>& row) {
+  for (std::size_t k = 0; k < std::min(columns.size(), row.size()); ++k) {
+    if (row[k].name != columns[k].name || row[k].unit != columns[k].unit) {
+      return fmt::format("cell {} is \"{}\" [{}], expected \"{}\" [{}]", k, row[k].name, row[k].unit,
+                         columns[k].name, columns[k].unit);
+    }
+    if (row[k].value.index() != static_cast<std::size_t>(columns[k].type)) {
+      return fmt::format("cell {}, \"{}\", has another type than the kind declares", k, row[k].name);
+    }
+  }
+  if (columns.size() == row.size()) return "";
+  return fmt::format("found {} cells, expected {}", row.size(), columns.size());
+}
+
+std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns) {
+  std::vector<SummaryCell> row;
+  for (const SummaryColumn& column : columns) {
+    CellValue nothing = std::numeric_limits<double>::quiet_NaN();
+    if (column.type == CellType::integer) nothing = missing_integer;
+    if (column.type == CellType::text) nothing = std::string();
+    row.push_back({column.name, column.unit, std::move(nothing)});
+  }
+  return row;
 }
 
 }  // namespace fw::study

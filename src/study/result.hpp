@@ -1,40 +1,59 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/verdict.hpp"
 #include "record/column.hpp"
 
 namespace fw::study {
 
-/// The outcome of a case against what theory predicts.
-enum class Verdict { holds, fails, not_applicable };
-
-/// "holds", "fails", "not applicable".
-std::string_view to_string(Verdict verdict);
-
+using fw::Verdict;
 using record::Column;
 using record::ColumnValues;
+
+using CellValue = std::variant<double, std::int64_t, std::string>;
+
+/// The value of a cell of integers that a case does not have; NaN and the empty text in other cells. A file
+/// marks columns with it by the attribute `missing`.
+using record::missing_integer;
 
 /// One cell of a summary row.
 struct SummaryCell {
   std::string name;
   std::string unit;
-  std::variant<double, std::int64_t, std::string> value;
+  CellValue value;
 };
 
-/// What one case of a study found. `columns` are its raw data, `summary` is its row of the summary (the same
-/// names, units and types, in the same order, in every case of a study; "verdict" and "reason" among them).
+/// The types of cells, in the order of `CellValue`.
+enum class CellType { number, integer, text };
+
+/// What a kind of study declares of a column of its summary.
+struct SummaryColumn {
+  std::string name;
+  std::string unit;
+  CellType type = CellType::number;
+  std::string meaning;  ///< in Markdown
+};
+
+/// Columns of the values of parameters, which a sweep puts before those of a kind, have names that begin so.
+inline constexpr std::string_view parameter_prefix = "parameter_";
+
+/// What one case of a study found. `columns` are its raw data, `summary` is its row of the summary: the
+/// columns that the kind declares (`SummaryRow`), in their order. The row in a file has `case` and
+/// `parameters` before them, and `verdict` and `reason` after.
 struct CaseResult {
   std::string id;   ///< group name in the file, unique in the study: "<problem>-<method>", no '/'
   std::string key;  ///< SHA-256 of the resolved case: what makes it the same case in another run; empty if it
                     ///< could not be computed
   std::vector<Column> columns;
   std::vector<SummaryCell> summary;
+  std::vector<SummaryCell> parameters{};  ///< of the point of a sweep
   Verdict verdict = Verdict::not_applicable;
   std::string reason;
 };
@@ -50,8 +69,14 @@ const std::string& text_of(const CaseResult& result, std::string_view name);
 
 /// Puts a column or cell in the place of the one of that name; a cell has to be there, a column is added.
 void replace_column(CaseResult& result, Column column);
-void replace_cell(CaseResult& result, std::string_view name,
-                  std::variant<double, std::int64_t, std::string> value);
+void replace_cell(CaseResult& result, std::string_view name, CellValue value);
+
+/// How a row differs from the declared columns, "cell 2 is \"x\" [s], expected \"y\" [1]"; nothing where it
+/// does not.
+std::string row_mismatch(const std::vector<SummaryColumn>& columns, const std::vector<SummaryCell>& row);
+
+/// The row of a case that could not be computed: NaN, `missing_integer`, empty texts.
+std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns);
 
 /// The result of a study: everything a result file holds but its provenance.
 struct StudyResult {

@@ -30,41 +30,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Gives cases that could not be computed the columns of one that went well, so that the summary stays a
-/// table.
-void complete_rows(StudyResult& study, const Plan& plan) {
-  std::map<std::string_view, const std::vector<SummaryCell>*> facts;
-  for (const PlannedCase& planned : plan.cases) facts[planned.id] = &planned.facts;
-  const auto is_complete = [](const CaseResult& result) { return !result.summary.empty(); };
-  const auto model = std::find_if(study.cases.begin(), study.cases.end(), is_complete);
-  const std::vector<SummaryCell> columns =
-      model != study.cases.end()
-          ? model->summary
-          : std::vector<SummaryCell>{{"verdict", "", std::string()}, {"reason", "", std::string()}};
-  for (CaseResult& result : study.cases) {
-    if (is_complete(result)) continue;
-    const std::vector<SummaryCell>& known = *facts.at(result.id);
-    for (SummaryCell cell : columns) {
-      const auto fact = std::find_if(known.begin(), known.end(),
-                                     [&](const SummaryCell& other) { return other.name == cell.name; });
-      if (fact != known.end() && fact->value.index() == cell.value.index()) {
-        cell.value = fact->value;
-      } else if (cell.name == "verdict") {
-        cell.value = std::string(to_string(result.verdict));
-      } else if (cell.name == "reason") {
-        cell.value = result.reason;
-      } else if (std::holds_alternative<double>(cell.value)) {
-        cell.value = std::numeric_limits<double>::quiet_NaN();
-      } else if (std::holds_alternative<std::int64_t>(cell.value)) {
-        cell.value = std::int64_t{0};
-      } else {
-        cell.value = std::string();
-      }
-      result.summary.push_back(std::move(cell));
-    }
-  }
-}
-
 /// The first letter of a worker's answer.
 constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i';
 
@@ -133,14 +98,14 @@ class Run {
     desks.push_back(
         {std::make_unique<WorkerProcess>([this](std::size_t index, const std::atomic<bool>& interrupted) {
           RunContext context = options_.context;
-          context.interrupted = &interrupted;
+          context.stop = StopToken(interrupted);
           return answer_of(plan_.cases[index], context);
         })});
   }
 
   /// Gives out cases to workers that have none, starting workers as needed, at most `jobs`.
   void give_out(std::deque<std::size_t>& queue, std::vector<Desk>& desks, std::size_t jobs) {
-    while (!queue.empty() && !options_.context.is_interrupted()) {
+    while (!queue.empty() && !options_.context.stop.stop_requested()) {
       auto idle = std::find_if(desks.begin(), desks.end(), [](const Desk& desk) { return !desk.index; });
       if (idle == desks.end()) {
         if (desks.size() >= jobs) return;
@@ -169,7 +134,7 @@ class Run {
       give_out(queue, desks, jobs);
       const bool is_busy =
           std::any_of(desks.begin(), desks.end(), [](const Desk& desk) { return desk.index; });
-      if (!is_busy && (queue.empty() || options_.context.is_interrupted())) return;
+      if (!is_busy && (queue.empty() || options_.context.stop.stop_requested())) return;
       wait_for(desks);
       for (Desk& desk : desks) {
         if (desk.index) {
@@ -178,7 +143,7 @@ class Run {
           desk.worker->receive();  // notices its end
         }
       }
-      if (options_.context.is_interrupted() && !interrupted_at) {
+      if (options_.context.stop.stop_requested() && !interrupted_at) {
         interrupted_at = Clock::now();
         for (const Desk& desk : desks) desk.worker->interrupt();
       }
@@ -221,7 +186,11 @@ class Run {
     if (answer.empty() || answer.front() == is_interrupted) return;
     if (answer.front() == is_failure) return fail(index, answer.substr(1), seconds);
     CaseResult result = decode(std::string_view(answer).substr(1));
+    if (const std::string wrong = row_mismatch(plan_.summary, result.summary); !wrong.empty()) {
+      return fail(index, "its row of the summary is not the one of its kind: " + wrong, seconds);
+    }
     result.id = plan_.cases[index].id;
+    result.parameters = plan_.cases[index].parameters;
     result.key = key_of(plan_.cases[index]);
     archive_.keep(result);
     finish(index, std::move(result), {.seconds = seconds});
@@ -231,6 +200,8 @@ class Run {
   void fail(std::size_t index, std::string reason, double seconds) {
     CaseResult result;
     result.id = plan_.cases[index].id;
+    result.parameters = plan_.cases[index].parameters;
+    result.summary = missing_row(plan_.summary);
     result.verdict = Verdict::fails;
     result.reason = std::move(reason);
     finish(index, std::move(result), {.computed = false, .seconds = seconds});
@@ -264,7 +235,6 @@ class Run {
         study.complete = false;
       }
     }
-    complete_rows(study, plan_);
     return study;
   }
 

@@ -13,8 +13,8 @@ const analysis::ReferenceSolution& SharedProblem::reference(const RunContext& co
     } else if (arithmetic_ == ReferenceArithmetic::binary128) {
       reference_ = analysis::ReferenceCache(context.reference_cache).certified(problem_.identity, ivp(), end);
     } else {
-      reference_ = analysis::binary64_reference(ivp(), [&context] { return context.is_interrupted(); });
-      if (context.is_interrupted()) throw Interrupted{};  // the next call tries again
+      reference_ = analysis::binary64_reference(ivp(), context.stop);
+      if (reference_.status.code == StatusCode::interrupted) context.check();  // the next call tries again
     }
   });
   return reference_;

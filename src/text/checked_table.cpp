@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "text/checked_table_section.hpp"
+#include "text/closest_name.hpp"
 #include "text/toml_writer.hpp"
 
 namespace fw {
@@ -54,6 +55,7 @@ CheckedTable CheckedTable::parse_file(const std::filesystem::path& path) {
 CheckedTable CheckedTable::parse_text(std::string_view text, std::string name) {
   auto document = std::make_shared<Section::Document>();
   document->name = std::move(name);
+  document->text = text;
   try {
     document->root = toml::parse(text);
   } catch (const toml::parse_error& error) {
@@ -76,7 +78,7 @@ const std::string& CheckedTable::path() const {
 std::vector<std::string> CheckedTable::keys() const {
   std::vector<std::string> result;
   for (const auto& [key, node] : *section_->table) {
-    if (node.source().begin.line > 0) result.emplace_back(key.str());
+    if (!section_->document->defaults.contains(&node)) result.emplace_back(key.str());
   }
   return result;
 }
@@ -85,19 +87,24 @@ bool CheckedTable::has(std::string_view key) const {
   auto& candidates = section_->document->asked[section_->table];
   if (std::find(candidates.begin(), candidates.end(), key) == candidates.end()) candidates.emplace_back(key);
   const toml::node* node = section_->table->get(key);
-  return node && node->source().begin.line > 0;  // an entry without a line is a default
+  return node && !section_->document->defaults.contains(node);
 }
 
 bool CheckedTable::is_table(std::string_view key) const {
   return has(key) && section_->table->get(key)->is_table();
 }
 
-double CheckedTable::number(std::string_view key, NumberRule rule) const {
-  return section_->number_of(section_->require(key, "a number"), {key}, rule);
+bool CheckedTable::holds_strings(std::string_view key) const {
+  const toml::array* array = has(key) ? section_->table->get(key)->as_array() : nullptr;
+  return array != nullptr && !array->empty() && array->front().is_string();
 }
 
-double CheckedTable::number_or(std::string_view key, double value, NumberRule rule) const {
-  if (const auto* node = section_->find(key)) return section_->number_of(*node, {key}, rule);
+double CheckedTable::number(std::string_view key, const NumberRange& range) const {
+  return section_->number_of(section_->require(key, "a number"), {key}, range);
+}
+
+double CheckedTable::number_or(std::string_view key, double value, const NumberRange& range) const {
+  if (const auto* node = section_->find(key)) return section_->number_of(*node, {key}, range);
   section_->add_default(key, value);
   return value;
 }
@@ -186,6 +193,54 @@ std::vector<CheckedTable> CheckedTable::tables(std::string_view key) const {
   return result;
 }
 
+std::map<std::string, double> CheckedTable::number_table(std::string_view key) const {
+  std::map<std::string, double> numbers;
+  table(key).section_->add_numbers("", numbers);
+  return numbers;
+}
+
+CheckedTable CheckedTable::with(const std::vector<TomlAssignment>& assignments, std::string name) const {
+  CheckedTable changed = parse_text(section_->document->text, std::move(name));
+  Section::Document& document = *changed.section_->document;
+  document.assigned = section_->document->assigned;
+  document.assigned.emplace_back(path(), assignments);
+  for (const auto& [place, values] : document.assigned) {
+    assign(section_at(document.root, place), document.name, values);
+  }
+  changed.section_->path = path();
+  changed.section_->table = &section_at(document.root, path());
+  return changed;
+}
+
+std::optional<CheckedTable::UnknownKey> CheckedTable::unknown_key(
+    const std::vector<std::string>& known) const {
+  std::optional<UnknownKey> first;
+  for (auto&& [key, node] : *section_->table) {
+    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    const std::size_t line = key.source().begin.line;
+    if (first && first->line <= line) continue;
+    first = {line, closest_name(key.str(), known).has_value(),
+             fmt::format("{}{}: {}", source_name(), line > 0 ? fmt::format(":{}", line) : "",
+                         section_->unknown_key_message(key, node, known))};
+  }
+  return first;
+}
+
+void CheckedTable::fail_missing(std::string_view key, const std::string& expected,
+                                const std::vector<std::string>& known) const {
+  section_->fail_missing(key, expected, known);
+}
+
+std::string CheckedTable::section_text(std::string_view key) const {
+  return fmt::format("a section [{}{}{}]", path(), path().empty() ? "" : ".", key);
+}
+
+CheckedTable CheckedTable::empty_table(std::string_view key) const {
+  auto section = std::make_shared<Section>(Section{section_->document, &section_->document->nothing,
+                                                   (path().empty() ? "" : path() + ".") + std::string(key)});
+  return CheckedTable(std::move(section));
+}
+
 void CheckedTable::finish() const {
   toml::source_index line = 0;
   std::string message;
@@ -214,7 +269,7 @@ void CheckedTable::fail(std::string_view key, std::initializer_list<std::size_t>
 }
 
 void CheckedTable::fail_missing(std::string_view key, const std::string& expected) const {
-  section_->fail_missing(key, expected);
+  section_->fail_missing(key, expected, section_->document->asked[section_->table]);
 }
 
 std::string CheckedTable::to_toml_text() const {

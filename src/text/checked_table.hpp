@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -17,6 +19,22 @@ namespace fw {
 
 /// What a number has to satisfy; it has to be finite in any case.
 enum class NumberRule { any, nonnegative, positive };
+
+/// The numbers from `lowest` to `highest`, without these where they are excluded.
+struct NumberRange {
+  NumberRange(NumberRule rule = NumberRule::any);
+  NumberRange(double from, double to) : lowest(from), highest(to) {}
+
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool excludes_lowest = false, excludes_highest = false;
+
+  bool contains(double value) const;
+  /// " > 0", " >= 0", " from 1 to 5", " > 0 and <= 1"; nothing for all numbers.
+  std::string text() const;
+};
+
+struct TomlAssignment;
 
 /// One table of a TOML document, read with checks.
 ///
@@ -42,9 +60,11 @@ class CheckedTable {
   bool has(std::string_view key) const;
   /// Whether the file gives the key as a table, for keys that may also be plain values.
   bool is_table(std::string_view key) const;
+  /// Whether the file gives the key as a list that begins with a string, for lists that may also be numbers.
+  bool holds_strings(std::string_view key) const;
 
-  double number(std::string_view key, NumberRule rule = NumberRule::any) const;
-  double number_or(std::string_view key, double value, NumberRule rule = NumberRule::any) const;
+  double number(std::string_view key, const NumberRange& range = {}) const;
+  double number_or(std::string_view key, double value, const NumberRange& range = {}) const;
   double positive_number(std::string_view key) const { return number(key, NumberRule::positive); }
 
   /// An integer in [lowest, highest].
@@ -70,9 +90,9 @@ class CheckedTable {
   Vec3<double> vec3_or(std::string_view key, const Vec3<double>& value) const;
 
   /// Lists of any length, also empty.
-  std::vector<double> numbers(std::string_view key, NumberRule rule = NumberRule::any) const;
+  std::vector<double> numbers(std::string_view key, const NumberRange& range = {}) const;
   std::vector<double> numbers_or(std::string_view key, const std::vector<double>& values,
-                                 NumberRule rule = NumberRule::any) const;
+                                 const NumberRange& range = {}) const;
   std::vector<std::int64_t> integers(std::string_view key,
                                      std::int64_t lowest = std::numeric_limits<std::int64_t>::min(),
                                      std::int64_t highest = std::numeric_limits<std::int64_t>::max()) const;
@@ -96,9 +116,9 @@ class CheckedTable {
 
   /// `count` numbers, given as one number for all or as a list with one per `what` ("spring").
   std::vector<double> number_or_list(std::string_view key, std::size_t count, std::string_view what,
-                                     NumberRule rule = NumberRule::any) const;
+                                     const NumberRange& range = {}) const;
   std::vector<double> number_or_list_or(std::string_view key, double value, std::size_t count,
-                                        std::string_view what, NumberRule rule = NumberRule::any) const;
+                                        std::string_view what, const NumberRange& range = {}) const;
 
   /// Puts a default that was worked out elsewhere (one number per spring, one vector per particle) into
   /// `to_toml_text()`. Does nothing if the file gives the key.
@@ -111,6 +131,31 @@ class CheckedTable {
   CheckedTable table_or_empty(std::string_view key) const;
   /// The sections [[key]] in the file's order; none if the file has none.
   std::vector<CheckedTable> tables(std::string_view key) const;
+  /// A section [key] with nothing in it, for messages about what is not there.
+  CheckedTable empty_table(std::string_view key) const;
+  /// "a section [section.key]"
+  std::string section_text(std::string_view key) const;
+
+  /// The numbers of the table [key] and of the tables below it, by their paths in it: "springs.damping".
+  std::map<std::string, double> number_table(std::string_view key) const;
+
+  /// This table with these values put in, to be read from anew: from the text, so that messages name its
+  /// lines; `name` stands for the file in messages. Throws InputError for a path that is none, an index out
+  /// of range, or a path that goes through something that is no table.
+  CheckedTable with(const std::vector<TomlAssignment>& assignments, std::string name) const;
+
+  /// A key that the file gives in this table, but nobody knows.
+  struct UnknownKey {
+    std::size_t line = 0;
+    bool has_suggestion = false;
+    std::string message{};  ///< `file:line: unknown key "stifness" in [springs]; did you mean "stiffness"?`
+  };
+  /// The first one in the file that is not among `known`.
+  std::optional<UnknownKey> unknown_key(const std::vector<std::string>& known) const;
+  /// Throws InputError for an absent key, or for a given key that is probably its misspelling, since it is
+  /// not among `known`.
+  [[noreturn]] void fail_missing(std::string_view key, const std::string& expected,
+                                 const std::vector<std::string>& known) const;
 
   /// Rejects, in this table and all that were read below it, the first key that no reader asked for:
   /// `studies/a.toml:12: unknown key "stifness" in [springs]; did you mean "stiffness"?`
@@ -131,6 +176,7 @@ class CheckedTable {
   std::string to_toml_text() const;
 
  private:
+  friend class TomlTree;
   struct Section;
   explicit CheckedTable(std::shared_ptr<Section> section);
   std::shared_ptr<Section> section_;

@@ -24,17 +24,17 @@ toml::array to_array(const Values& values) {
 
 }  // namespace
 
-std::vector<double> CheckedTable::numbers(std::string_view key, NumberRule rule) const {
+std::vector<double> CheckedTable::numbers(std::string_view key, const NumberRange& range) const {
   constexpr std::string_view expected = "an array of numbers";
   const auto& array = section_->array_of(section_->require(key, expected), {key}, expected);
   return read_all<double>(array, {key}, [&](const toml::node& node, const EntryPlace& place) {
-    return section_->number_of(node, place, rule);
+    return section_->number_of(node, place, range);
   });
 }
 
 std::vector<double> CheckedTable::numbers_or(std::string_view key, const std::vector<double>& values,
-                                             NumberRule rule) const {
-  if (section_->find(key)) return numbers(key, rule);
+                                             const NumberRange& range) const {
+  if (section_->find(key)) return numbers(key, range);
   section_->add_default(key, to_array(values));
   return values;
 }
@@ -116,19 +116,19 @@ std::vector<std::variant<int, std::string>> CheckedTable::indices_or_names(
 }
 
 std::vector<double> CheckedTable::number_or_list(std::string_view key, std::size_t count,
-                                                 std::string_view what, NumberRule rule) const {
+                                                 std::string_view what, const NumberRange& range) const {
   const std::string expected =
       fmt::format("one number, or an array with one number per {} ({})", what, count);
   const auto& node = section_->require(key, expected);
-  if (node.is_number()) return std::vector<double>(count, section_->number_of(node, {key}, rule));
+  if (node.is_number()) return std::vector<double>(count, section_->number_of(node, {key}, range));
   const auto& array = section_->array_of(node, {key}, expected);
   if (array.size() != count) section_->fail(node, {key}, expected);
-  return numbers(key, rule);
+  return numbers(key, range);
 }
 
 std::vector<double> CheckedTable::number_or_list_or(std::string_view key, double value, std::size_t count,
-                                                    std::string_view what, NumberRule rule) const {
-  if (section_->find(key)) return number_or_list(key, count, what, rule);
+                                                    std::string_view what, const NumberRange& range) const {
+  if (section_->find(key)) return number_or_list(key, count, what, range);
   section_->add_default(key, value);
   return std::vector<double>(count, value);
 }

@@ -12,18 +12,6 @@
 namespace fw {
 namespace {
 
-std::string expected_number(NumberRule rule) {
-  switch (rule) {
-    case NumberRule::positive:
-      return "a finite number > 0";
-    case NumberRule::nonnegative:
-      return "a finite number >= 0";
-    case NumberRule::any:
-      break;
-  }
-  return "a finite number";
-}
-
 std::string shortened(const std::string& text) {
   constexpr std::size_t longest = 60;
   if (text.size() <= longest) return text;
@@ -37,6 +25,30 @@ std::string entries(std::size_t count) {
 }
 
 }  // namespace
+
+NumberRange::NumberRange(NumberRule rule) {
+  if (rule == NumberRule::any) return;
+  lowest = 0.0;
+  excludes_lowest = rule == NumberRule::positive;
+}
+
+bool NumberRange::contains(double value) const {
+  return (excludes_lowest ? value > lowest : value >= lowest) &&
+         (excludes_highest ? value < highest : value <= highest);
+}
+
+std::string NumberRange::text() const {
+  const bool is_bounded_below = std::isfinite(lowest), is_bounded_above = std::isfinite(highest);
+  if (is_bounded_below && is_bounded_above && !excludes_lowest && !excludes_highest) {
+    return fmt::format(" from {} to {}", lowest, highest);
+  }
+  std::string text;
+  if (is_bounded_below) text = fmt::format(" {} {}", excludes_lowest ? ">" : ">=", lowest);
+  if (is_bounded_above) {
+    text += fmt::format("{} {} {}", text.empty() ? "" : " and", excludes_highest ? "<" : "<=", highest);
+  }
+  return text;
+}
 
 std::string describe(const toml::node& node) {
   if (const auto* text = node.as_string()) return "the string " + toml_quoted(shortened(text->get()));
@@ -60,13 +72,13 @@ toml::node* CheckedTable::Section::find(std::string_view key) const {
 
 toml::node& CheckedTable::Section::require(std::string_view key, std::string_view expected) const {
   if (toml::node* node = find(key)) return *node;
-  fail_missing(key, expected);
+  fail_missing(key, expected, document->asked[table]);
 }
 
-void CheckedTable::Section::fail_missing(std::string_view key, std::string_view expected) const {
+void CheckedTable::Section::fail_missing(std::string_view key, std::string_view expected,
+                                         const std::vector<std::string>& known) const {
   // A misspelt key is the likeliest reason: a given key that nobody knows, close to a known one that is not
   // given.
-  const auto& known = document->asked[table];
   std::vector<std::string> absent;
   for (const std::string& name : known) {
     if (!table->contains(name)) absent.push_back(name);
@@ -75,7 +87,7 @@ void CheckedTable::Section::fail_missing(std::string_view key, std::string_view 
     if (std::find(known.begin(), known.end(), given.str()) != known.end()) continue;
     if (closest_name(given.str(), absent)) {
       throw InputError(fmt::format("{}:{}: {}", document->name, given.source().begin.line,
-                                   unknown_key_message(given, node)));
+                                   unknown_key_message(given, node, known)));
     }
   }
   throw InputError(
@@ -100,11 +112,9 @@ void CheckedTable::Section::fail(const toml::node& node, const EntryPlace& place
   throw InputError(fmt::format("{}: found {}, expected {}", where(&node, place), describe(node), expected));
 }
 
-std::string CheckedTable::Section::unknown_key_message(const toml::key& key, const toml::node& node) const {
-  const auto asked = document->asked.find(table);
-  const std::vector<std::string> none;
-  const auto& candidates = asked == document->asked.end() ? none : asked->second;
-  const auto suggestion = closest_name(key.str(), candidates);
+std::string CheckedTable::Section::unknown_key_message(const toml::key& key, const toml::node& node,
+                                                       const std::vector<std::string>& known) const {
+  const auto suggestion = closest_name(key.str(), known);
   const std::string prefix = path.empty() ? "" : path + ".";
   const auto section = [&](std::string_view name) {
     return node.is_table() ? fmt::format("[{}{}]", prefix, name) : fmt::format("[[{}{}]]", prefix, name);
@@ -126,7 +136,7 @@ void CheckedTable::Section::find_unknown(toml::source_index& line, std::string& 
       const toml::source_index here = key.source().begin.line;
       if (message.empty() || here < line) {
         line = here;
-        message = unknown_key_message(key, node);
+        message = unknown_key_message(key, node, document->asked[table]);
       }
       continue;
     }
@@ -143,19 +153,29 @@ void CheckedTable::Section::find_unknown(toml::source_index& line, std::string& 
 }
 
 double CheckedTable::Section::number_of(const toml::node& node, const EntryPlace& place,
-                                        NumberRule rule) const {
+                                        const NumberRange& range) const {
   double value = 0.0;
   if (const auto* number = node.as_floating_point()) {
     value = number->get();
   } else if (const auto* integer = node.as_integer()) {
     value = static_cast<double>(integer->get());
   } else {
-    fail(node, place, expected_number(rule));
+    fail(node, place, "a finite number" + range.text());
   }
-  const bool in_range = (rule == NumberRule::any) || (rule == NumberRule::nonnegative && value >= 0.0) ||
-                        (rule == NumberRule::positive && value > 0.0);
-  if (!std::isfinite(value) || !in_range) fail(node, place, expected_number(rule));
+  if (!std::isfinite(value) || !range.contains(value)) fail(node, place, "a finite number" + range.text());
   return value;
+}
+
+void CheckedTable::Section::add_numbers(const std::string& prefix,
+                                        std::map<std::string, double>& numbers) const {
+  for (const auto& [key, node] : *table) {
+    const std::string name(key.str());
+    if (auto* inner = node.as_table()) {
+      Section{document, inner, path + "." + name}.add_numbers(prefix + name + ".", numbers);
+    } else {
+      numbers[prefix + name] = number_of(node, {key.str()}, {});
+    }
+  }
 }
 
 std::int64_t CheckedTable::Section::integer_of(const toml::node& node, const EntryPlace& place,
@@ -215,9 +235,8 @@ Vec3<double> CheckedTable::Section::vec3_of(const toml::node& node, const EntryP
   constexpr std::string_view expected = "an array of 3 numbers [x, y, z]";
   const toml::array& array = array_of(node, place, expected);
   if (array.size() != 3) fail(node, place, expected);
-  return {number_of(array[0], place.at(0), NumberRule::any),
-          number_of(array[1], place.at(1), NumberRule::any),
-          number_of(array[2], place.at(2), NumberRule::any)};
+  return {number_of(array[0], place.at(0), {}), number_of(array[1], place.at(1), {}),
+          number_of(array[2], place.at(2), {})};
 }
 
 }  // namespace fw

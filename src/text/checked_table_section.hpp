@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "text/checked_table.hpp"
+#include "text/toml_assignment.hpp"
 
 namespace fw {
 
@@ -27,7 +28,12 @@ struct EntryPlace {
 struct CheckedTable::Section {
   struct Document {
     std::string name;
+    std::string text;
+    /// What was put into it since, each in the section at the path.
+    std::vector<std::pair<std::string, std::vector<TomlAssignment>>> assigned;
     toml::table root;
+    toml::table nothing;                             ///< what a section that is not there has in it
+    std::unordered_set<const toml::node*> defaults;  ///< entries that the file does not give
     std::unordered_set<const toml::node*> read;
     std::unordered_map<const toml::table*, std::vector<std::string>> asked;  ///< candidates of "did you mean"
   };
@@ -40,21 +46,25 @@ struct CheckedTable::Section {
   toml::node* find(std::string_view key) const;
   /// The same for a key that has to be there.
   toml::node& require(std::string_view key, std::string_view expected) const;
-  [[noreturn]] void fail_missing(std::string_view key, std::string_view expected) const;
   /// Adds an entry that the file does not give.
   template <class Value>
   void add_default(std::string_view key, Value&& value) const {
     const auto [position, inserted] = table->insert(key, std::forward<Value>(value));
     document->read.insert(&position->second);
+    if (inserted) document->defaults.insert(&position->second);
   }
 
   std::string where(const toml::node* node, const EntryPlace& place) const;
   [[noreturn]] void fail(const toml::node& node, const EntryPlace& place, std::string_view expected) const;
   /// The first key below this section that nobody asked for: line and message.
   void find_unknown(toml::source_index& line, std::string& message) const;
-  std::string unknown_key_message(const toml::key& key, const toml::node& node) const;
+  std::string unknown_key_message(const toml::key& key, const toml::node& node,
+                                  const std::vector<std::string>& known) const;
+  [[noreturn]] void fail_missing(std::string_view key, std::string_view expected,
+                                 const std::vector<std::string>& known) const;
+  void add_numbers(const std::string& prefix, std::map<std::string, double>& numbers) const;
 
-  double number_of(const toml::node& node, const EntryPlace& place, NumberRule rule) const;
+  double number_of(const toml::node& node, const EntryPlace& place, const NumberRange& range) const;
   std::int64_t integer_of(const toml::node& node, const EntryPlace& place, std::int64_t lowest,
                           std::int64_t highest) const;
   int index_of(const toml::node& node, const EntryPlace& place, std::size_t count,
@@ -66,6 +76,12 @@ struct CheckedTable::Section {
   const toml::array& array_of(const toml::node& node, const EntryPlace& place,
                               std::string_view expected) const;
 };
+
+/// Puts values into a document (see TomlAssignment).
+void assign(toml::node& root, const std::string& name, const std::vector<TomlAssignment>& assignments);
+
+/// The section at `path`, such as "study" or "problem[1]"; the whole document for "".
+toml::table& section_at(toml::table& root, const std::string& path);
 
 /// What a message says was found: `the string "abc"`, `-1`, `an array of 2 entries`.
 std::string describe(const toml::node& node);

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "core/error.hpp"
+#include "text/checked_table_section.hpp"
 #include "text/toml_writer.hpp"
 
 namespace fw {
@@ -104,22 +105,21 @@ std::string TomlAssignment::text() const {
   return path + " = " + std::visit(written, value);
 }
 
-std::string toml_with(std::string_view text, const std::string& name,
-                      const std::vector<TomlAssignment>& assignments) {
-  toml::table root;
-  try {
-    root = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    const auto position = error.source().begin;
-    throw InputError(fmt::format("{}:{}:{}: TOML syntax error: {}", name, position.line, position.column,
-                                 error.description()));
-  }
+void assign(toml::node& root, const std::string& name, const std::vector<TomlAssignment>& assignments) {
   for (const TomlAssignment& assignment : assignments) {
     const std::vector<Step> steps = split(assignment.path);
     std::visit([&](const auto& value) { set_at(&root, steps, name, assignment.path, value); },
                assignment.value);
   }
-  return to_toml_text(root);
+}
+
+toml::table& section_at(toml::table& root, const std::string& path) {
+  toml::node* place = &root;
+  for (const Step& step : path.empty() ? std::vector<Step>{} : split(path)) {
+    const auto* index = std::get_if<std::size_t>(&step);
+    place = index ? place->as_array()->get(*index) : place->as_table()->get(std::get<std::string>(step));
+  }
+  return *place->as_table();
 }
 
 }  // namespace fw

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "integrators/network.hpp"
@@ -82,12 +83,16 @@ TEST(ConvergedRun, SpendsNoMoreThanItsBudget) {
 }
 
 TEST(ConvergedRun, StopsWhenItIsInterrupted) {
-  int asked = 0;
+  std::atomic<bool> asked{false};
+  const auto stop_after_the_second_run = [&](ConstVectorRef difference) {
+    asked = true;
+    return largest(difference);
+  };
   const ConvergedRun run =
-      run_to_accuracy(*integrators::explicit_runge_kutta("rk4"), driven_pair(0.5), largest,
-                      {.error = 1e-14, .is_interrupted = [&asked] { return ++asked > 5; }}, true);
-  EXPECT_EQ(run.status.code, StatusCode::stopped_by_observer);
-  EXPECT_LE(asked, 7);
+      run_to_accuracy(*integrators::explicit_runge_kutta("rk4"), driven_pair(0.5), stop_after_the_second_run,
+                      {.error = 1e-14, .fewest_steps = 16, .stop = StopToken(asked)}, true);
+  EXPECT_EQ(run.status.code, StatusCode::interrupted);
+  EXPECT_EQ(run.work.accepted_steps, 32u);  // what was finished before is kept
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(OscillatorAmplification, OfMultistepFormulasHasParasiticFactors) {
 
 TEST(OscillatorAmplification, OfGeneralisedAlphaHasTheRadiusAtInfinityThatItIsMadeFor) {
   for (const double rho : {0.0, 0.5, 0.8, 1.0}) {
-    const auto factors = amplification_factors(integrators::chung_hulbert_parameters(rho));
+    const auto factors = amplification_factors(integrators::alpha_parameters({.rho_infinity = rho}));
     EXPECT_NEAR(spectral_radius_at_infinity(factors), rho, 2e-4) << rho;
   }
 }

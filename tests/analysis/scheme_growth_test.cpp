@@ -6,9 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/theory/growth_matrices.hpp"
 #include "analysis/theory/linearised_system.hpp"
 #include "analysis/theory/stability_limit.hpp"
 #include "integrators/special/verlet.hpp"
+#include "integrators/structural/generalised_alpha.hpp"
+#include "integrators/structural/hht_alpha.hpp"
+#include "integrators/structural/newmark.hpp"
 #include "integrators/tableau/explicit_runge_kutta.hpp"
 #include "integrators/tableau/linear_multistep.hpp"
 #include "integrators/tableau/splitting.hpp"
@@ -78,6 +82,30 @@ TEST(SchemeGrowth, OfAnExactSchemeIsTheExponential) {
   for (const Complex z : {Complex(-0.5, 0.0), Complex(-0.3, 1.2), Complex(0.0, 0.9)}) {
     EXPECT_NEAR(exact.of_eigenvalue(z), std::exp(z.real()), 1e-12);
   }
+}
+
+/// The polynomial, the matrix and steps of the code are three ways to one number; explicit central
+/// differences lose stability at ωh = 2.
+TEST(SchemeGrowth, OfTheAlphaFamilyIsThatOfItsPolynomialItsMatrixAndItsSteps) {
+  const auto rule = [](const integrators::AlphaParameters& parameters) {
+    return LinearScheme{.rule = LinearRule::alpha_family, .alpha = parameters};
+  };
+  const integrators::NewmarkOptions damped{.beta = 0.3025, .gamma = 0.6};
+  const SchemeGrowth newmark(integrators::make_newmark(damped), rule(alpha_parameters(damped)));
+  const SchemeGrowth steps(integrators::make_newmark(damped), LinearScheme{});
+  for (const auto& [a, b] : {std::pair{0.7, 0.0}, {3.9, 0.0}, {50.0, 0.0}, {1.5, 0.4}, {0.2, 1.1}}) {
+    EXPECT_NEAR(newmark.of_vibration(a, b), steps.of_vibration(a, b), 1e-9);
+    for (const auto& parameters :
+         {alpha_parameters(damped), alpha_parameters(integrators::HhtAlphaOptions{.alpha = -0.3}),
+          alpha_parameters(integrators::GeneralisedAlphaOptions{.rho_infinity = 0.4})}) {
+      const Matrix m = alpha_step_matrix(parameters, Matrix::Constant(1, 1, a), Matrix::Constant(1, 1, b));
+      EXPECT_NEAR(alpha_growth(parameters, a, b), spectral_radius(m), 1e-7);
+    }
+  }
+  const integrators::AlphaParameters central{.beta = 0.0, .gamma = 0.5};
+  EXPECT_EQ(alpha_growth(central, 3.999, 0.0), 1.0);
+  EXPECT_GT(alpha_growth(central, 4.001, 0.0), 1.001);
+  EXPECT_EQ(alpha_growth(integrators::AlphaParameters{}, 1e12, 0.0), 1.0) << "average acceleration, far out";
 }
 
 TEST(SchemeGrowth, KnowsWhichSchemesAreUnstableAtEveryStep) {

@@ -93,5 +93,30 @@ TEST(Describe, PrintsTheTableauOfARungeKuttaMethod) {
             "0], t\n");
 }
 
+TEST(Describe, TakesTheOptionsOfACall) {
+  with_json({"describe", "rkc2[stages=5]", "--json"},
+            "assert x['name'] == 'rkc2' and x['call'] == 'rkc2[stages=5]' and x['stages'] == 5, x\n"
+            "assert len(x['tableau']['b']) == 5 and x['derived']['order'] == 2, x\n");
+  const ScratchDirectory scratch;
+  const ProcessResult refused = run(scratch.path(), {"describe", "rkc2[stages=1]"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("method \"rkc2\": option stages: found \"1\""));
+}
+
+TEST(Verify, KeepsItsResultAndPrintsTheSameWhenItIsAskedAgain) {
+  const ScratchDirectory scratch;
+  const std::vector<std::string> arguments = {"verify", "--method", "explicit_euler", "--json",
+                                              "-o",     "v.h5",     "--jobs",         "1"};
+  const ProcessResult first = run(scratch.path(), arguments), again = run(scratch.path(), arguments);
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(first.out, again.out);
+  EXPECT_THAT(first.out, HasSubstr("\"property\":"));
+  const ProcessResult shown = run(scratch.path(), {"show", "v.h5"});
+  EXPECT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("explicit_euler"));
+  EXPECT_LT(again.seconds, first.seconds) << "the method was verified a second time";
+}
+
 }  // namespace
 }  // namespace fw::app::test

@@ -119,11 +119,11 @@ class FaultInjection(unittest.TestCase):
             rounds += 1
             self.assertLess(rounds, OPTIONS.kills, "the runs end before they can be killed")
             shutil.rmtree(self.folder / "r", ignore_errors=True)
-            self.write(study())
+            self.write(study(steps="[6e-6, 3e-6]"))
             done = set()
             while True:
                 run = Run(self.folder, "--jobs", str(draw.choice((1, 2, 3))))
-                time.sleep(draw.uniform(0.0, 0.5))
+                time.sleep(draw.uniform(0.0, 0.25))
                 victim = draw.choice(("run", "run", "worker", "interrupt", "terminate"))
                 workers = run.workers()
                 killed = run.process.poll() is None

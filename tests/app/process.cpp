@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "paths.hpp"
+
 namespace fw::app::test {
 
 namespace {
@@ -32,7 +34,7 @@ Process::Process(const std::filesystem::path& directory, const std::vector<std::
     : out_(::memfd_create("out", MFD_CLOEXEC)),
       err_(::memfd_create("err", MFD_CLOEXEC)),
       start_(Clock::now()) {
-  std::vector<std::string> words{FEDERWERK_EXECUTABLE};
+  std::vector<std::string> words{fw::test::federwerk_executable()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

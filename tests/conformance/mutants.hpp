@@ -20,7 +20,8 @@ class ClaimingIntegrator final : public Integrator {
   const ExtendedSolver& extended_solver() const override { return extended_solver_; }
 
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override {
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions&) const override {
     return solve_(ivp, control, observer);
   }
 
@@ -76,6 +77,8 @@ class SpoiledStepper final : public integrators::AdaptiveStepper {
     return status;
   }
   void accept() override { stepper_->accept(); }
+  void restart(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  void serialise(StateArchive& archive) override { stepper_->serialise(archive); }
   bool has_dense_output() const override { return stepper_->has_dense_output(); }
   void interpolate(double theta, VectorRef out) override { stepper_->interpolate(theta, out); }
 

@@ -38,7 +38,7 @@ inline std::unique_ptr<Integrator> right_scheme(const std::string& call) {
 /// The tableau of that name out of the catalogue.
 template <class Tableau>
 Tableau tableau_of(const std::string& name) {
-  return std::get<Tableau>(catalog::find_method(name).data);
+  return std::get<Tableau>(catalog::theory_of_call(name).coefficients);
 }
 
 /// A mistake in the running code alone: claims and data are those of `name`.
@@ -52,7 +52,7 @@ inline SeededBug code_bug(std::string name, std::string description, const std::
                 std::unique_ptr<Integrator> right = right_scheme(twin);
                 return mutated ? with_claims(right->info(), mutant()) : std::move(right);
               },
-          .data = catalog::find_method(twin.substr(0, twin.find('['))).data,
+          .data = catalog::theory_of_call(twin).coefficients,
           .caught_by = std::move(caught_by)};
 }
 
@@ -97,7 +97,7 @@ SeededBug claim_bug(std::string name, std::string description, const std::string
                 change(claims);
                 return with_claims(claims, std::move(right));
               },
-          .data = catalog::find_method(twin).data,
+          .data = catalog::theory_of_call(twin).coefficients,
           .caught_by = std::move(caught_by)};
 }
 
@@ -110,7 +110,7 @@ inline SeededBug hand_written_bug(std::string name, std::string description, con
           .description = std::move(description),
           .make = [claims, make = std::move(make)](
                       bool mutated) { return with_claims(right_scheme(claims)->info(), make(mutated)); },
-          .data = catalog::find_method(claims).data,
+          .data = catalog::theory_of_call(claims).coefficients,
           .caught_by = std::move(caught_by)};
 }
 

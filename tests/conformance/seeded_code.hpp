@@ -232,15 +232,16 @@ inline std::vector<SeededBug> wrong_algorithms() {
   bugs.push_back(code_bug("newmark_gamma_0_55", "gamma = 0.55, claimed of order 2", "newmark",
                           [] { return integrators::make_newmark({.beta = 0.25, .gamma = 0.55}); },
                           {order, damped_order}));
-  bugs.push_back(code_bug(
-      "generalised_alpha_wrong_alpha_f", "alpha_f a tenth too large", "generalised_alpha",
-      [] {
-        integrators::AlphaParameters parameters = integrators::chung_hulbert_parameters(0.8);
-        parameters.alpha_f += 0.1;
-        return std::make_unique<integrators::FixedStepIntegrator>(
-            right_scheme("generalised_alpha")->info(), integrators::alpha_family_stepper(parameters));
-      },
-      {order, damped_order}));
+  bugs.push_back(code_bug("generalised_alpha_wrong_alpha_f", "alpha_f a tenth too large", "generalised_alpha",
+                          [] {
+                            integrators::AlphaParameters parameters =
+                                integrators::alpha_parameters(integrators::GeneralisedAlphaOptions{});
+                            parameters.alpha_f += 0.1;
+                            return std::make_unique<integrators::FixedStepIntegrator>(
+                                right_scheme("generalised_alpha")->info(),
+                                integrators::alpha_family_stepper(parameters));
+                          },
+                          {order, damped_order}));
   bugs.push_back(code_bug("discrete_gradient_as_midpoint",
                           "the force at the midpoint in place of the discrete gradient", "discrete_gradient",
                           [] { return integrators::make_average_vector_field({.quadrature_points = 1}); },

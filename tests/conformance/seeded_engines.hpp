@@ -23,9 +23,9 @@ class FunctionStepper final : public integrators::Stepper {
 
 /// Constant steps by the function that `make` gives for a run.
 inline std::unique_ptr<Integrator> hand_written(std::function<FunctionStepper::Step(const Ivp&, Work&)> make,
-                                                bool needs_second_order = false) {
+                                                Capabilities needs = {}) {
   return std::make_unique<integrators::FixedStepIntegrator>(
-      MethodInfo{.name = "hand-written", .needs_second_order = needs_second_order},
+      MethodInfo{.name = "hand-written", .needs = needs},
       [make](const Ivp& ivp, double, Work& work) -> std::unique_ptr<integrators::Stepper> {
         return std::make_unique<FunctionStepper>(make(ivp, work));
       });
@@ -74,7 +74,7 @@ inline std::unique_ptr<Integrator> verlet_with(VerletMistake mistake) {
           return {};
         };
       },
-      true);
+      {Capability::second_order});
 }
 
 /// The classical method, whose third stage is evaluated at t + `third_node` h.
@@ -118,7 +118,7 @@ inline std::unique_ptr<Integrator> midpoint_with_newton_iterations(int iteration
           return {};
         };
       },
-      true);
+      {Capability::second_order});
 }
 
 /// A linear multistep formula by fixed-point iterations, with the classical method or Euler's for its start.
@@ -236,6 +236,11 @@ class HandWrittenPair final : public integrators::AdaptiveStepper {
     return {};
   }
   void accept() override { k_.front() = k_.back(); }
+  void restart(double, ConstVectorRef) override { has_first_slope_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("slopes", k_);
+    archive.visit("first slope is known", has_first_slope_);
+  }
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override { throw std::logic_error("no dense output of its own"); }
 

@@ -19,7 +19,7 @@ TEST(NystromMethods, HaveTheOrderThatTheyClaim) {
   for (const NystromTableau& tableau : schemes::nystrom_tableaus()) {
     const auto integrator = make_nystrom(tableau);
     expect_order(*integrator, undamped, undamped_end, integrator->info().order);
-    if (integrator->info().needs_position_forces) {
+    if (integrator->info().needs.has(Capability::position_forces)) {
       EXPECT_EQ(integrator->info().order_with_velocity_forces, 0) << tableau.name;
     } else {
       expect_order(*integrator, damped, damped_end, integrator->info().order_with_velocity_forces);
@@ -63,7 +63,7 @@ TEST(NystromMethods, AreCaughtWithAWrongCoefficient) {
 TEST(NystromMethods, AgreeInDoubleAndInBinary128) {
   for (const NystromTableau& tableau : schemes::nystrom_tableaus()) {
     const auto integrator = make_nystrom(tableau);
-    const Ivp ivp = driven_pair(integrator->info().needs_position_forces ? 0.0 : 0.375);
+    const Ivp ivp = driven_pair(integrator->info().needs.has(Capability::position_forces) ? 0.0 : 0.375);
     const Solution solution = run(*integrator, ivp, ivp.t1 / 40.0);
     const std::vector<Float128> extended = integrator->extended_solver()(ivp, 40);
     for (Index k = 0; k < 4; ++k) {

@@ -119,7 +119,7 @@ inline void expect_order(const Integrator& scheme, const Ivp& ivp, const Vector&
 inline void expect_claimed_orders(const Integrator& scheme, int coarsest, int levels,
                                   double refinement = std::numbers::sqrt2) {
   for (const bool damped : {false, true}) {
-    if (damped && scheme.info().needs_position_forces) continue;
+    if (damped && scheme.info().needs.has(Capability::position_forces)) continue;
     const Ivp ivp = driven_chain(damped);
     static const std::array<Vector, 2> references = {certified_end(driven_chain(false)),
                                                      certified_end(driven_chain(true))};

@@ -33,7 +33,8 @@ std::vector<std::unique_ptr<Integrator>> specialised_schemes() {
 
 TEST(SpecialisedSchemes, HoldFixedPointsStillAndRepeatBitForBit) {
   for (const auto& scheme : specialised_schemes()) {
-    const Ivp ivp = random_network(91, {.is_damped = !scheme->info().needs_position_forces}, 1.0);
+    const Ivp ivp =
+        random_network(91, {.is_damped = !scheme->info().needs.has(Capability::position_forces)}, 1.0);
     const auto& fixed = ivp.system->second_order()->fixed();
     const Index n = ivp.y0.size() / 2;
     const Solution solution = run(*scheme, ivp, 1.0 / 256.0);
@@ -49,8 +50,8 @@ TEST(SpecialisedSchemes, HoldFixedPointsStillAndRepeatBitForBit) {
 
 TEST(SpecialisedSchemes, KeepTheLinearMomentumOfAFreeNetwork) {
   for (const auto& scheme : specialised_schemes()) {
-    const Ivp ivp =
-        random_network(92, {.is_damped = !scheme->info().needs_position_forces, .is_free = true}, 1.0);
+    const Ivp ivp = random_network(
+        92, {.is_damped = !scheme->info().needs.has(Capability::position_forces), .is_free = true}, 1.0);
     const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system);
     const Index n = ivp.y0.size() / 2;
     const Solution solution = run(*scheme, ivp, 1.0 / 256.0);
@@ -64,7 +65,8 @@ TEST(SpecialisedSchemes, KeepTheLinearMomentumOfAFreeNetwork) {
 TEST(SpecialisedSchemes, TakeAShorterLastStepUnlessTheyAreMultistep) {
   for (const auto& scheme : specialised_schemes()) {
     if (scheme->info().is_multistep) continue;
-    const Ivp ivp = random_network(93, {.is_damped = !scheme->info().needs_position_forces}, 1.0);
+    const Ivp ivp =
+        random_network(93, {.is_damped = !scheme->info().needs.has(Capability::position_forces)}, 1.0);
     // 99 whole steps and a tenth of one: the end lies near that of the run whose steps fit.
     const double h = 1.0 / 99.1;
     const Vector whole = run(*scheme, ivp, 0.01).state;

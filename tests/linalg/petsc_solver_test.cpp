@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "linalg/cloth_step.hpp"
 #include "linalg/true_residual.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::linalg {
 namespace {
@@ -106,7 +107,7 @@ TEST(PetscSolver, TakesNewValuesInTheSamePatternWithEveryStorage) {
       const auto solver = make_linear_solver(petsc(text, storage));
       for (const double shift : {0.0, 3.0, -0.01}) {
         SparseMatrix A = step.matrix;
-        integrators::add_to_diagonal(A, shift);
+        sparse::add_to_diagonal(A, shift);
         ASSERT_TRUE(solver->factorise(A, work).ok()) << text;
         Vector x = Vector::Zero(A.cols());
         const LinearSolve fresh = solve_once(petsc(text, storage), A, step.right_side).solve;
@@ -126,7 +127,7 @@ TEST(PetscSolver, KeepsThePreconditionerWhenTheMatrixIsReplaced) {
   const ClothStep step = cloth_step(8, 2000.0, 0.02);
   SparseMatrix other = step.matrix;
   other.coeffs() *= 2.0;
-  integrators::add_to_diagonal(other, 40.0);
+  sparse::add_to_diagonal(other, 40.0);
   for (const PetscMatrixType storage : storages) {
     Work work;
     const auto solver = make_linear_solver(petsc("", storage));
@@ -148,7 +149,7 @@ TEST(PetscSolver, KeepsThePreconditionerWhenTheMatrixIsReplaced) {
 TEST(PetscSolver, FactorisesAnewWhenTheMatrixOfADirectSolverIsReplaced) {
   const ClothStep step = cloth_step(6, 2000.0, 0.02);
   SparseMatrix other = step.matrix;
-  integrators::add_to_diagonal(other, 1.0);
+  sparse::add_to_diagonal(other, 1.0);
   Work work;
   const auto solver = make_linear_solver(petsc("-ksp_type preonly -pc_type lu"));
   ASSERT_TRUE(solver->factorise(step.matrix, work).ok());
@@ -286,7 +287,7 @@ TEST(PetscSolver, ReportsASingularMatrix) {
 TEST(PetscSolver, ReportsAnIndefiniteMatrix) {
   ClothStep step = cloth_step(4, 2000.0, 0.02);
   step.matrix.coeffs() *= -1.0;
-  integrators::add_to_diagonal(step.matrix, 0.5);
+  sparse::add_to_diagonal(step.matrix, 0.5);
   ASSERT_LT(Eigen::SelfAdjointEigenSolver<Matrix>(Matrix(step.matrix)).eigenvalues().minCoeff(), -0.1);
   ASSERT_GT(Eigen::SelfAdjointEigenSolver<Matrix>(Matrix(step.matrix)).eigenvalues().maxCoeff(), 0.1);
   for (const char* text : {"-pc_type none", "-pc_type jacobi"}) {

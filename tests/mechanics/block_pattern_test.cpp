@@ -1,4 +1,4 @@
-#include "mechanics/block_pattern.hpp"
+#include "mechanics/assembly/block_pattern.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ std::set<std::pair<int, int>> entries(const SparseMatrix& matrix) {
 TEST(BlockPattern, HasABlockPerParticleAndTwoPerPairOfNeighboursAndNoOther) {
   RandomModels random(20260601);
   const MassSpringModel model = random.network(SpringLaw::hooke, 10, 30, true);  // with repeated pairs
-  const BlockPattern pattern(10, model.springs.first, model.springs.second);
+  const BlockPattern pattern(10, assemble<ElementBatch>(model)->cliques());
   std::set<std::pair<int, int>> blocks;
   for (int i = 0; i < 10; ++i) blocks.emplace(i, i);
   for (std::size_t e = 0; e < 30; ++e) {
@@ -125,8 +125,8 @@ TEST(BlockPattern, OfAnotherMatrixIsRefused) {
 TEST(BlockPattern, RefusesMoreEntriesThanItsIndicesCanCount) {
   // Two particles joined 60 million times would stay small, but the bound is taken before repetitions are
   // known.
-  const std::vector<int> first(60'000'000, 0), second(60'000'000, 1);
-  EXPECT_THROW(BlockPattern(2, first, second), InputError);
+  std::vector<Cliques> cliques = {{.arity = 2, .nodes = std::vector<int>(120'000'000, 0)}};
+  EXPECT_THROW(BlockPattern(2, cliques), InputError);
 }
 
 }  // namespace

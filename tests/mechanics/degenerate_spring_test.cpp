@@ -77,7 +77,7 @@ TEST(DegenerateSpring, StoresTheEnergyOfItsLaw) {
   const State state = coincident_state();
   const double healthy = 5.0 * 0.1 * 0.1;
   const auto elastic = [&](SpringLaw law) {
-    return MassSpringSystem(coincident_pair(law, 0.7)).energies(state.q, state.v).elastic;
+    return MassSpringSystem(coincident_pair(law, 0.7)).energies(state.q, state.v)["elastic"];
   };
   EXPECT_NEAR(elastic(SpringLaw::hooke), 5.0 * 0.49 + healthy, 1e-14);
   EXPECT_NEAR(elastic(SpringLaw::strain), 5.0 * 0.7 + healthy / 0.9, 1e-14);

@@ -1,10 +1,10 @@
-#include "mechanics/obstacle_force.hpp"
+#include "mechanics/elements/obstacle_force.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "mechanics/obstacle_tangent.hpp"
+#include "mechanics/elements/obstacle_tangent.hpp"
 #include "random_model.hpp"
 
 namespace fw::mechanics {

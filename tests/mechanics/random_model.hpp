@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "mechanics/mass_spring_force.hpp"
 #include "mechanics/mass_spring_system.hpp"
+#include "mechanics/model_elements.hpp"
 
 namespace fw::mechanics {
 
@@ -87,6 +87,16 @@ class RandomModels {
     return model;
   }
 
+  /// Every force element, with springs in four groups under the three laws; one group is empty.
+  MassSpringModel everything_in_groups() {
+    MassSpringModel model = everything(SpringLaw::strain);
+    model.springs.groups = {{"frame", SpringLaw::hooke, 5},
+                            {"skin", SpringLaw::strain, 4},
+                            {"none", SpringLaw::hooke, 0},
+                            {"ropes", SpringLaw::tension_only, 7}};
+    return model;
+  }
+
   /// Positions in [−1, 1]³, velocities in [−2, 2]³; fixed particles stand still.
   State state(const MassSpringModel& model) {
     const auto n = static_cast<Index>(3 * model.mass.size());
@@ -99,8 +109,8 @@ class RandomModels {
   std::mt19937_64 generator_;
 };
 
-/// ∂f/∂q and ∂f/∂v of `mass_spring_force` by complex steps, the oracle of every analytic tangent.
-inline std::pair<Matrix, Matrix> complex_step_tangents(const MassSpringModel& model, const State& state) {
+/// ∂f/∂q and ∂f/∂v of the elements by complex steps, the oracle of every analytic tangent.
+inline std::pair<Matrix, Matrix> complex_step_tangents(const ElementAssembly& elements, const State& state) {
   constexpr double h = 1e-200;
   const Index n = state.q.size();
   std::vector<Complex> q(state.q.begin(), state.q.end());
@@ -110,7 +120,7 @@ inline std::pair<Matrix, Matrix> complex_step_tangents(const MassSpringModel& mo
     Matrix derivative(n, n);
     for (Index j = 0; j < n; ++j) {
       argument[static_cast<std::size_t>(j)].imag(h);
-      mass_spring_force(model, q.data(), v.data(), f.data());
+      elements.force(q.data(), v.data(), f.data());
       argument[static_cast<std::size_t>(j)].imag(0.0);
       for (Index i = 0; i < n; ++i) derivative(i, j) = f[static_cast<std::size_t>(i)].imag() / h;
     }
@@ -119,6 +129,10 @@ inline std::pair<Matrix, Matrix> complex_step_tangents(const MassSpringModel& mo
   Matrix K = differentiate(q);
   Matrix D = differentiate(v);
   return {std::move(K), std::move(D)};
+}
+
+inline std::pair<Matrix, Matrix> complex_step_tangents(const MassSpringModel& model, const State& state) {
+  return complex_step_tangents(*assemble<ElementBatch>(model), state);
 }
 
 /// Largest deviation over the largest entry of the oracle.

@@ -1,4 +1,4 @@
-#include "mechanics/spring_force.hpp"
+#include "mechanics/elements/spring_force.hpp"
 
 #include <gtest/gtest.h>
 

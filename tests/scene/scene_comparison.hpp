@@ -22,6 +22,12 @@ inline void expect_same_scene(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.model.springs.damping, b.model.springs.damping);
   EXPECT_EQ(a.model.springs.rest_length, b.model.springs.rest_length);
   EXPECT_EQ(a.model.springs.law, b.model.springs.law);
+  ASSERT_EQ(a.model.springs.groups.size(), b.model.springs.groups.size());
+  for (std::size_t k = 0; k < a.model.springs.groups.size(); ++k) {
+    EXPECT_EQ(a.model.springs.groups[k].name, b.model.springs.groups[k].name);
+    EXPECT_EQ(a.model.springs.groups[k].law, b.model.springs.groups[k].law);
+    EXPECT_EQ(a.model.springs.groups[k].size, b.model.springs.groups[k].size);
+  }
   ASSERT_EQ(a.model.anchors.size(), b.model.anchors.size());
   for (std::size_t i = 0; i < a.model.anchors.size(); ++i) {
     EXPECT_EQ(a.model.anchors[i].particle, b.model.anchors[i].particle);

@@ -71,6 +71,8 @@ TEST(SceneErrors, NameUnknownKeysAndSections) {
        "s.toml:4: constraint: constraints are not available in this version"},
       {chain + "length = 1\n[particles]\nmass = 1\n",
        "s.toml:7: particles: found [particles] beside [generate], expected one of them"},
+      {particles + "[[springs]]\nname = 'a'\nbetween = []\n[[springs]]\nname = 'a'\nbetween = []\n",
+       "s.toml:8: [springs[1]] name: found \"a\" again, expected each name once"},
       {chain + "length = 1\n[springs]\nbetween = []\n",
        "s.toml:7: springs: found [springs] beside [generate], expected one of them"},
   });

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "paths.hpp"
 #include "scene/scene.hpp"
 #include "scene_comparison.hpp"
 
@@ -100,6 +101,32 @@ TEST(SceneFormat, KnowsEveryLaw) {
                              "between = [[0,1]]\nstiffness = 1\nlaw = '" + name + "'\n";
     EXPECT_EQ(parse_scene(text, "a.toml").model.springs.law, law);
   }
+}
+
+TEST(SceneFormat, ReadsGroupsOfSpringsWithLawsOfTheirOwn) {
+  const std::string particles = "[particles]\nposition = [[0,0,0],[1,0,0],[3,0,0]]\nmass = 1\n";
+  const Scene scene =
+      parse_scene(particles +
+                      "[[springs]]\nname = 'frame'\nbetween = [[0,1],[1,2]]\nstiffness = [7, 8]\n"
+                      "[[springs]]\nbetween = []\n"
+                      "[[springs]]\nname = 'rope'\nlaw = 'tension_only'\nbetween = [[0,2]]\n"
+                      "stiffness = 9\ndamping = 0.5\nrest_length = 2\n",
+                  "a.toml");
+  const mechanics::Springs& springs = scene.model.springs;
+  EXPECT_THAT(springs.first, ElementsAre(0, 1, 0));
+  EXPECT_THAT(springs.second, ElementsAre(1, 2, 2));
+  EXPECT_THAT(springs.stiffness, ElementsAre(7, 8, 9));
+  EXPECT_THAT(springs.damping, ElementsAre(0, 0, 0.5));
+  EXPECT_THAT(springs.rest_length, ElementsAre(1, 2, 2));
+  ASSERT_EQ(springs.groups.size(), 3u);
+  EXPECT_EQ(springs.groups[0].name, "frame");
+  EXPECT_EQ(springs.groups[0].law, mechanics::SpringLaw::hooke);
+  EXPECT_EQ(springs.groups[0].size, 2u);
+  EXPECT_EQ(springs.groups[1].size, 0u);
+  EXPECT_EQ(springs.groups[2].law, mechanics::SpringLaw::tension_only);
+  EXPECT_EQ(springs.law_of(1), mechanics::SpringLaw::hooke);
+  EXPECT_EQ(springs.law_of(2), mechanics::SpringLaw::tension_only);
+  expect_same_scene(parse_scene(scene.resolved_toml, "resolved"), scene);
 }
 
 TEST(SceneFormat, AcceptsCoincidentPointsIfTheRestLengthIsGiven) {
@@ -213,7 +240,8 @@ TEST(SceneFormat, ReadsEverySceneOfTheProject) {
   const std::set<std::string> at_rest = {"free_spring", "uneven_chain", "damped_chain", "buckling_chain",
                                          "resting_cloth"};
   std::size_t scenes = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(FEDERWERK_SOURCE_DIR "/studies/scenes")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(fw::test::source_directory() + "/studies/scenes")) {
     if (entry.path().extension() != ".toml") continue;
     SCOPED_TRACE(entry.path().string());
     ++scenes;

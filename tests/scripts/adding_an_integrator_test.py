@@ -117,13 +117,13 @@ class Build:
             (file for file in self.commands if str(pathlib.Path(file).parent) == folder), None)
         if like is None:
             raise Failure(f"nothing in {folder} shows how {path} is compiled")
+        # Headers of the tree go before those of the rooms.
         command, result = self.commands[like], []
-        words = iter(command)
+        first = next(k for k, word in enumerate(command) if word.startswith("-"))
+        words = iter(command[:first] + [f"-I{self.tree / 'src'}"] + command[first:])
         for word in words:
             if word in ("-o", "-c"):
                 next(words)
-            elif word.startswith("-I") and pathlib.Path(word[2:]) == ROOT / "src":
-                result += [f"-I{self.tree / 'src'}", word]
             else:
                 result.append(word)
         target = self.object_of(path)

@@ -211,6 +211,36 @@ class AdaptiveReference(Federwerk):
                 require_consistent_file(model, result)
                 require_agreement(model, result)
 
+    def test_groups_of_springs_have_laws_of_their_own(self):
+        methods = ("symplectic_euler", "rk4", "implicit_euler")
+        for index in range(max(4, settings.count // 3)):
+            rng, scene, _ = random_case(index, 11, law="hooke", damped=index % 2 == 0)
+            scene["springs"].setdefault("rest_length", 0.8)  # ropes exactly at their rest length have two tangents
+            laws = [LAWS[int(k)] for k in rng.integers(0, 3, int(rng.integers(2, 5)))]
+            text = random_scenes.toml_text(random_scenes.in_groups(rng, scene, laws))
+            model = MassSpringModel(text)
+            with self.subTest(index=index, laws=laws, scene=text):
+                result = simulate(text, self.folder, *CVODE, "--t-end", 1.0, "--frames", 8)
+                require_consistent_file(model, result)
+                require_agreement(model, result)
+                number = result.datasets["system/spring_group"]
+                law = np.array([name.decode() for name in result.datasets["system/group_law"]], dtype=object)
+                self.assertEqual(list(law), laws)
+                self.assertEqual(list(law[number]), list(model.law))
+                unit = {"strain" if given == "strain" else "other" for given in laws}
+                self.assertEqual(result.units["system/stiffness"],
+                                 "SI" if len(unit) == 2 else {"strain": "N", "other": "N/m"}[unit.pop()])
+                step = round(0.2 / max(model.fastest_rate(), 2.0), 5)
+                for method in methods:
+                    found = simulate(text, self.folder, "--method", method, "--step", step, "--t-end",
+                                     round(20 * step, 10), "--frames", 21)
+                    expected = reference.steps(FixedSteps.STEPPERS[method], model, step, 20)
+                    require_close(found.position, expected[:, 0], 1.0, f"{method} positions", 1e-11)
+        wrong = MassSpringModel(text)
+        wrong.law[0] = "tension_only" if wrong.law[0] == "strain" else "strain"
+        with self.assertRaises(AssertionError):
+            require_agreement(wrong, result)
+
     def test_a_wrong_model_is_caught(self):
         _, _, text = random_case(0, 5, law="hooke", damped=True)
         result = simulate(text, self.folder, *CVODE, "--t-end", 1.5)

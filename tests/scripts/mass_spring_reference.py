@@ -19,7 +19,7 @@ class MassSpringModel:
 
     def __init__(self, toml_text):
         scene = tomllib.loads(toml_text)
-        world, particles, springs = scene.get("world", {}), scene["particles"], scene.get("springs")
+        world, particles, springs = scene.get("world", {}), scene["particles"], scene.get("springs", [])
         self.position = np.array(particles["position"], dtype=float)
         self.count = len(self.position)
         self.velocity = np.array(particles.get("velocity", np.zeros_like(self.position)), dtype=float)
@@ -27,15 +27,13 @@ class MassSpringModel:
         self.fixed = np.array(particles.get("fixed", []), dtype=int)
         self.gravity = np.array(world.get("gravity", [0, 0, 0]), dtype=float)
         self.drag = float(world.get("drag", 0.0))
-        between = springs["between"] if springs else []
-        self.between = np.array(between, dtype=int).reshape(-1, 2)
-        self.law = springs.get("law", "hooke") if springs else "hooke"
+        # one table [springs], or [[springs]]: groups one after the other, each with a law of its own
+        groups = springs if isinstance(springs, list) else [springs]
+        columns = [self.spring_columns(group) for group in groups]
+        self.between = np.concatenate([column[0] for column in columns] or [np.zeros((0, 2), dtype=int)])
+        self.law, self.stiffness, self.damping, self.rest_length = (
+            np.concatenate([column[k] for column in columns] or [np.zeros(0)]) for k in range(1, 5))
         number = len(self.between)
-        start = self.position[self.between[:, 1]] - self.position[self.between[:, 0]]
-        start_length = np.sqrt((start * start).sum(axis=1))
-        self.stiffness = per_item(springs["stiffness"] if springs else 0.0, number)
-        self.damping = per_item(springs.get("damping", 0.0) if springs else 0.0, number)
-        self.rest_length = per_item(springs.get("rest_length", start_length) if springs else 0.0, number)
         # incidence[i, s] = +1 where spring s starts at i, -1 where it ends: adds f to i and -f to j (S6).
         self.incidence = np.zeros((self.count, number))
         self.incidence[self.between[:, 0], np.arange(number)] += 1.0
@@ -44,9 +42,19 @@ class MassSpringModel:
         self.free[self.fixed] = 0.0
         self.solutions = {}
 
+    def spring_columns(self, group):
+        """Ends, law, stiffness, damping and rest length of the springs of one group."""
+        between = np.array(group["between"], dtype=int).reshape(-1, 2)
+        number = len(between)
+        start = self.position[between[:, 1]] - self.position[between[:, 0]]
+        start_length = np.sqrt((start * start).sum(axis=1))
+        return (between, np.full(number, group.get("law", "hooke"), dtype=object),
+                per_item(group["stiffness"], number), per_item(group.get("damping", 0.0), number),
+                per_item(group.get("rest_length", start_length), number))
+
     def effective_stiffness(self):
         """N/m for every law: the strain law's constant is in newtons (S7)."""
-        return self.stiffness / self.rest_length if self.law == "strain" else self.stiffness
+        return self.stiffness / np.where(self.law == "strain", self.rest_length, 1.0)
 
     def force(self, x, v):
         """Total force on each point [N], zero on fixed ones; complex arguments give complex-step derivatives."""
@@ -55,8 +63,8 @@ class MassSpringModel:
         length = np.sqrt((d * d).sum(axis=1))
         r = d / length[:, None]
         elongation = length - self.rest_length
-        if self.law == "tension_only":
-            elongation = np.where(elongation.real >= 0.0, elongation, 0.0)  # the tangent is zero only below l0
+        slack = (self.law == "tension_only") & (elongation.real < 0.0)  # the tangent is zero only below l0
+        elongation = np.where(slack, 0.0, elongation)
         tension = self.effective_stiffness() * elongation + self.damping * (w * r).sum(axis=1)
         total = self.incidence @ (tension[:, None] * r)
         total = total + self.mass[:, None] * self.gravity - self.drag * v
@@ -83,8 +91,7 @@ class MassSpringModel:
         """Springs (half k elongation^2, only stretched ones for tension_only) and gravity, zero at the origin."""
         length = np.sqrt(((self.incidence.T @ x) ** 2).sum(axis=1))
         elongation = length - self.rest_length
-        if self.law == "tension_only":
-            elongation = np.maximum(elongation, 0.0)
+        elongation = np.where((self.law == "tension_only") & (elongation < 0.0), 0.0, elongation)
         elastic = 0.5 * float((self.effective_stiffness() * elongation**2).sum())
         return elastic - float((self.mass[:, None] * x * self.gravity).sum())
 

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -33,6 +34,7 @@ import plot_stiffness  # noqa: E402
 import plot_sweep  # noqa: E402
 import plot_trajectory  # noqa: E402
 import plot_vector_field  # noqa: E402
+import plot_verify  # noqa: E402
 import plot_work_precision  # noqa: E402
 import synthetic_results  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
@@ -53,6 +55,14 @@ class PlotTest(unittest.TestCase):
     def draw(self, module, path):
         with ResultFile(path) as result:
             return module.draw(result)
+
+    def plot_results(self, *arguments):
+        """What scripts/plot_results.py does, without a process of its own and with small pictures."""
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), \
+                plot_style.plt.rc_context({"savefig.dpi": 50}):
+            code = plot_style.main("", plot_results.choose_drawing, [*map(str, arguments), "--formats", "png"])
+        return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 
     def script(self, name, *arguments):
         return subprocess.run([sys.executable, SCRIPTS / name, *arguments], cwd="/", text=True, capture_output=True,
@@ -79,7 +89,7 @@ class EveryPlot(PlotTest):
 
     def test_is_chosen_by_the_kind_of_the_file(self):
         files = [self.write(kind) for kind in synthetic_results.ALL]
-        answer = self.script("plot_results.py", *files, "-o", self.folder / "plots")
+        answer = self.plot_results(*files, "-o", self.folder / "plots")
         self.assertEqual(answer.returncode, 0, answer.stderr)
         self.assertEqual(sorted(path.name for path in (self.folder / "plots").glob("*.png")),
                          sorted(f"{kind}.png" for kind in synthetic_results.ALL))
@@ -148,7 +158,8 @@ def fail(path, names=None):
 
 class CasesThatCouldNotBeComputed(PlotTest):
     KINDS = ["agreement", "construction", "convergence", "dissipation", "energy", "jacobian", "linear_solver", "oscillation",
-             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "work_precision"]
+             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "verify",
+             "work_precision"]
 
     def make(self, kind):
         path = self.folder / f"{kind}.h5"
@@ -178,9 +189,11 @@ class CasesThatCouldNotBeComputed(PlotTest):
     def test_of_any_one_case_leave_the_others_to_be_drawn(self):
         for kind in set(self.KINDS) - {"vector_field"}:  # it has one case
             names = self.names(kind)
+            original = self.folder / f"{kind}.h5"
+            original.rename(self.folder / "original.h5")
             for name in names if len(names) > 1 else []:
                 with self.subTest(kind, case=name):
-                    path = self.make(kind)
+                    path = pathlib.Path(shutil.copy(self.folder / "original.h5", original))
                     fail(path, [name])
                     for figure in self.draw(sys.modules[f"plot_{kind}"], path):
                         footers = [text.get_text() for text in figure.texts if "federwerk" in text.get_text()]
@@ -190,7 +203,7 @@ class CasesThatCouldNotBeComputed(PlotTest):
     def test_are_named_in_one_message(self):
         path = self.make("convergence")
         fail(path, ["henon_heiles-rk4", "henon_heiles-midpoint"])
-        answer = self.script("plot_results.py", path)
+        answer = self.plot_results(path)
         self.assertEqual(answer.returncode, 0)
         self.assertEqual(answer.stderr, f"{path}: not drawn, since they could not be computed: henon_heiles-midpoint, "
                                         "henon_heiles-rk4\n")
@@ -321,7 +334,7 @@ class LinearSolver(PlotTest):
         synthetic_results.linear_solver(self.path)
 
     def test_draws_scaling_simulation_and_spectra(self):
-        answer = self.script("plot_results.py", self.path)
+        answer = self.plot_results(self.path)
         self.assertEqual(answer.returncode, 0, answer.stderr)
         self.assertEqual(len(list(self.folder.glob("linear_solver-*.png"))), 3)
 
@@ -343,7 +356,7 @@ class Stability(PlotTest):
         synthetic_results.stability(self.path)
 
     def test_draws_regions_stars_axis_limits_thresholds_and_laws(self):
-        answer = self.script("plot_results.py", self.path)
+        answer = self.plot_results(self.path)
         self.assertEqual(answer.returncode, 0, answer.stderr)
         self.assertEqual(len(list(self.folder.glob("stability-*.png"))), 6)
 
@@ -371,6 +384,33 @@ class Stability(PlotTest):
         self.assertIn("slope -1", [text.get_text() for text in laws.axes[0].texts])
 
 
+class Verification(PlotTest):
+    def make(self):
+        path = self.folder / "verify.h5"
+        synthetic_results.verify(path)
+        return path
+
+    def test_is_chosen_by_its_kind(self):
+        answer = self.script("plot_results.py", self.make())
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertEqual(len(answer.stdout.splitlines()), 1)
+
+    def test_has_a_square_per_scheme_and_property_and_marks_what_fails(self):
+        figure, = self.draw(plot_verify, self.make())
+        panel = figure.axes[0]
+        self.assertEqual([tick.get_text() for tick in panel.get_xticklabels()],
+                         ["order, y' = f(t, y)", "shorter last step", "symplectic"])
+        self.assertEqual([tick.get_text() for tick in panel.get_yticklabels()], ["rk4", "broken", "velocity_verlet"])
+        image = panel.images[0].get_array()
+        numpy.testing.assert_array_equal(numpy.ma.getmaskarray(image) | numpy.isnan(numpy.ma.getdata(image)),
+                                         [[False, True, False], [False, True, True], [True, False, False]])
+        dots, crosses = panel.lines
+        numpy.testing.assert_array_equal(crosses.get_xdata(), [0])
+        numpy.testing.assert_array_equal(crosses.get_ydata(), [1])
+        self.assertEqual(dots.get_xdata().size, 4)
+        self.assertEqual(panel.get_legend().get_texts()[1].get_text(), "fails (1)")
+
+
 class LaterKinds(PlotTest):
     """Energy, dissipation, propagation, and the further pictures of kind "simulate"."""
 
@@ -383,7 +423,7 @@ class LaterKinds(PlotTest):
         for kind, figures in (("energy", 4), ("dissipation", 3), ("propagation", 4), ("vector_field", 1),
                               ("oscillation", 1), ("construction", 1)):
             with self.subTest(kind):
-                answer = self.script("plot_results.py", self.make(kind))
+                answer = self.plot_results(self.make(kind))
                 self.assertEqual(answer.returncode, 0, answer.stderr)
                 self.assertEqual(len(answer.stdout.splitlines()), figures)
 
@@ -536,8 +576,7 @@ class Convergence(PlotTest):
 
     def test_many_problems_go_to_several_figures(self):
         path = self.write("convergence", problems=[f"problem_{i}" for i in range(7)])
-        self.assertEqual(len(self.draw(plot_convergence, path)), 3)
-        answer = self.script("plot_convergence.py", path)
+        answer = self.plot_results(path)
         self.assertEqual(answer.returncode, 0, answer.stderr)
         self.assertEqual(len(list(self.folder.glob("convergence-[123].png"))), 3)
 

@@ -102,11 +102,35 @@ def random_scene(rng, law, stiff=False, free_flight=False, damped=None):
     return scene
 
 
+def in_groups(rng, scene, laws):
+    """The scene with its springs in groups [[springs]], one per law of `laws`, cut at random places; a group may be
+    empty."""
+    springs = scene["springs"]
+    count = len(springs["between"])
+    borders = [0, *sorted(int(k) for k in rng.integers(0, count + 1, len(laws) - 1)), count]
+    groups = []
+    for law, begin, end in zip(laws, borders[:-1], borders[1:]):
+        group = {key: value[begin:end] if isinstance(value, list) else value for key, value in springs.items()}
+        if law == "hooke" and rng.random() < 0.5:
+            group.pop("law", None)
+        else:
+            group["law"] = law
+        if rng.random() < 0.5:
+            group["name"] = f"group {len(groups)}"
+        groups.append(group)
+    return {**scene, "springs": groups}
+
+
 def toml_text(scene):
     """Lists, strings and numbers look alike in TOML and JSON, except that JSON writes 1e-05 the same way too."""
-    lines = [f"{key} = {json.dumps(value)}" for key, value in scene.items() if not isinstance(value, dict)]
-    for name, table in scene.items():
-        if isinstance(table, dict):
-            lines.append(f"[{name}]")
+    def is_section(value):
+        return isinstance(value, dict) or isinstance(value, list) and value and isinstance(value[0], dict)
+
+    lines = [f"{key} = {json.dumps(value)}" for key, value in scene.items() if not is_section(value)]
+    for name, section in scene.items():
+        if not is_section(section):
+            continue
+        for table in [section] if isinstance(section, dict) else section:
+            lines.append(f"[{name}]" if isinstance(section, dict) else f"[[{name}]]")
             lines += [f"{key} = {json.dumps(value)}" for key, value in table.items()]
     return "\n".join(lines) + "\n"

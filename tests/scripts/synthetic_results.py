@@ -367,6 +367,27 @@ def construction(path):
 LATER = {"energy": energy, "dissipation": dissipation, "propagation": propagation, "vector_field": vector_field,
          "oscillation": oscillation, "construction": construction}
 
+
+def verify(path):
+    """A scheme that keeps all it claims, one that does not, and one that has a property of its own."""
+    found = {"rk4": {"order, y' = f(t, y)": "holds", "symplectic": "holds"},
+             "broken": {"order, y' = f(t, y)": "fails", "symplectic": "not applicable"},
+             "velocity_verlet": {"order, y' = f(t, y)": "not applicable", "shorter last step": "holds",
+                                 "symplectic": "holds"}}
+    rows = []
+    with new_file(path, "verify", "Verification of schemes") as file:
+        for method, properties in found.items():
+            case = file.create_group(f"cases/{method}")
+            put(case, "property", list(properties), "")
+            for name in ("claimed", "derived", "measured", "reason"):
+                put(case, name, ["4"] * len(properties), "")
+            put(case, "verdict", list(properties.values()), "")
+            rows.append((method, method, "fails" if "fails" in properties.values() else "holds"))
+        summary = file.create_group("summary")
+        for name, column in zip(("case", "method", "verdict"), zip(*rows)):
+            put(summary, name, list(column), "")
+
+
 def work_precision(path, factorisations=40):
     """Two ladders on one problem: an explicit method of order 4 on the front, an implicit one of order 2 above it."""
     work = numpy.array([100, 200, 400, 800])

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "paths.hpp"
 #include "samples.hpp"
 #include "scratch_directory.hpp"
 #include "store/study_file.hpp"
@@ -10,15 +11,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path source = FEDERWERK_SOURCE_DIR;
+const std::filesystem::path source = fw::test::source_directory();
 
 /// What scripts/check_results_schema.py says about a file and a text of the description.
 std::string deviations(const std::string& description, const std::filesystem::path& file) {
   const ScratchDirectory scratch;
   write_bytes(scratch / "schema.md", description);
-  const std::string command = "/usr/bin/python3 '" + (source / "scripts/check_results_schema.py").string() +
-                              "' '" + (scratch / "schema.md").string() + "' '" + file.string() +
-                              "' 2>&1 || true";
+  const std::string command = fw::test::python_command() + " '" +
+                              (source / "scripts/check_results_schema.py").string() + "' '" +
+                              (scratch / "schema.md").string() + "' '" + file.string() + "' 2>&1 || true";
   FILE* pipe = ::popen(command.c_str(), "r");
   std::string out;
   for (int c; (c = std::fgetc(pipe)) != EOF;) out += static_cast<char>(c);

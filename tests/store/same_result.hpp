@@ -40,6 +40,7 @@ inline ::testing::AssertionResult same(const study::CaseResult& a, const study::
         c.values);
     if (!equal) return differ() << "values of " << c.name;
   }
+  if (a.parameters.size() != b.parameters.size()) return differ() << "number of parameters";
   if (a.summary.size() != b.summary.size()) return differ() << "number of summary cells";
   for (std::size_t i = 0; i < a.summary.size(); ++i) {
     const study::SummaryCell &c = a.summary[i], &d = b.summary[i];

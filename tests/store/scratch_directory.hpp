@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "paths.hpp"
+
 namespace fw::store::test {
 
 /// A new empty directory for one test, removed at its end.
@@ -78,7 +80,7 @@ int in_child(const Body& body) {
 inline std::string run_python(const std::string& program, const std::vector<std::string>& arguments) {
   const ScratchDirectory scratch;
   write_bytes(scratch / "program.py", program);
-  std::string command = "/usr/bin/python3 '" + (scratch / "program.py").string() + "'";
+  std::string command = fw::test::python_command() + " '" + (scratch / "program.py").string() + "'";
   for (const std::string& argument : arguments) command += " '" + argument + "'";
   command += " 2>&1";
   FILE* pipe = ::popen(command.c_str(), "r");

@@ -132,12 +132,14 @@ TEST(Show, ATrajectoryWithItsEnergies) {
 TEST(Show, FindsTheLargestDriftBetweenTheEndsAndNanIfThereIsOne) {
   const ScratchDirectory scratch;
   const auto drift = [&](double middle) {
-    TrajectoryWriter writer(
-        scratch / "a.h5", header(), chain(1),
-        [&](double t, ConstVectorRef, ConstVectorRef) {
-          return FrameQuantities{.kinetic = t == 1.0 ? middle : 5.0};
-        },
-        3);
+    TrajectoryWriter writer(scratch / "a.h5", header(), chain(1),
+                            {.list = {{"kinetic_energy", "J"}, {"potential_energy", "J"}},
+                             .evaluate =
+                                 [&](double t, ConstVectorRef, ConstVectorRef, std::span<double> values) {
+                                   values[0] = t == 1.0 ? middle : 5.0;
+                                   values[1] = 0.0;
+                                 }},
+                            3);
     for (int f = 0; f < 4; ++f) writer.frame(f, known_state(1, f));
     writer.finish({}, {});
     return read_trajectory_summary(scratch / "a.h5");

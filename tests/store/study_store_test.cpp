@@ -10,6 +10,7 @@
 #include "same_result.hpp"
 #include "samples.hpp"
 #include "scratch_directory.hpp"
+#include "store/show_table.hpp"
 #include "store/study_file.hpp"
 
 namespace fw::store::test {
@@ -64,15 +65,18 @@ TEST(StudyFile, AnEmptyStudyIsAValidFile) {
   EXPECT_FALSE(read_study(scratch / "a.h5").result.complete);
 }
 
-TEST(StudyFile, AddsVerdictAndReasonToASummaryWithoutThem) {
+TEST(StudyFile, MarksIntegersThatACaseDoesNotHaveAndKeepsParametersApart) {
   const ScratchDirectory scratch;
   study::StudyResult study = sample_study(3);
-  for (study::CaseResult& result : study.cases) result.summary.resize(4);
+  study.cases[1].summary[2].value = study::missing_integer;
+  for (study::CaseResult& result : study.cases) result.parameters = {{"parameter_k", "N/m", 4.0}};
   write_study(scratch / "a.h5", "", study);
   const auto cases = read_study(scratch / "a.h5").result.cases;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    EXPECT_TRUE(same(cases[i], sample_case(static_cast<int>(i))));
-  }
+  ASSERT_EQ(cases.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(same(cases[i], study.cases[i]));
+  EXPECT_EQ(cases[1].parameters.at(0).name, "parameter_k");
+  EXPECT_THAT(show_table(scratch / "a.h5", {.format = TableFormat::csv, .of_case = "", .columns = {}}),
+              HasSubstr("pendel-rk1,4,rk1,nan,,0.5,fails,"));
 }
 
 TEST(StudyFile, RefusesResultsThatContradictThemselvesAndWritesNothing) {
@@ -99,7 +103,7 @@ TEST(StudyFile, RefusesResultsThatContradictThemselvesAndWritesNothing) {
   refuses(study, "pendel-rk2");
   study = sample_study(3);
   study.cases[0].summary[0].name = "case";
-  refuses(study, "reserved");
+  refuses(study, "written from the case itself");
 }
 
 TEST(StudyFile, ASpecOfMoreThan64KiBFits) {

@@ -81,13 +81,12 @@ TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {
       const Vector state = known_state(n, static_cast<int>(f));
       const double t = 0.5 * static_cast<double>(f);
       const Vector q = state.head(3 * n), v = state.tail(3 * n);
-      const FrameQuantities expected_quantities = known_quantities(t, q, v);
       for (std::size_t i = 0; i < half; ++i) {
         wrong += position[f * half + i] != q[static_cast<Index>(i)];
         wrong += velocity[f * half + i] != v[static_cast<Index>(i)];
       }
-      wrong += time[f] != t || kinetic[f] != 1.0 + t || elastic[f] != expected_quantities.elastic;
-      wrong += gravitational[f] != 3.0 || obstacle[f] != expected_quantities.obstacle;
+      wrong += time[f] != t || kinetic[f] != 1.0 + t || elastic[f] != 2.0 + q[0];
+      wrong += gravitational[f] != 3.0 || obstacle[f] != 4.0 + v[0];
       wrong += potential[f] != elastic[f] + gravitational[f] + obstacle[f];
       wrong += total[f] != kinetic[f] + potential[f];
       wrong += linear[3 * f] != t || linear[3 * f + 1] != 5.0 || linear[3 * f + 2] != 6.0;
@@ -131,6 +130,32 @@ TEST(TrajectoryWriter, TheStiffnessOfAStrainLawIsAForce) {
   const LibraryLock lock;
   const InputFile file(scratch / "a.h5");
   EXPECT_EQ(read_dataset(open_group(file.id(), "system"), "stiffness").unit, "N");
+}
+
+TEST(TrajectoryWriter, StoresGroupsOfSpringsOneAfterTheOtherWithTheirLawsAndNames) {
+  const ScratchDirectory scratch;
+  mechanics::MassSpringModel model = chain(4);
+  model.springs.groups = {{"frame", mechanics::SpringLaw::hooke, 1},
+                          {"", mechanics::SpringLaw::strain, 0},
+                          {"rope", mechanics::SpringLaw::tension_only, 2}};
+  const auto unit = [&](const char* name) {
+    TrajectoryWriter writer(scratch / name, header(), model, known_quantities, 1);
+    writer.finish({}, {});
+    const LibraryLock lock;
+    const InputFile file(scratch / name);
+    return read_dataset(open_group(file.id(), "system"), "stiffness").unit;
+  };
+  EXPECT_EQ(unit("a.h5"), "SI") << "newtons in one group, newtons per metre in the others";
+  const LibraryLock lock;
+  const InputFile file(scratch / "a.h5");
+  const Handle system = open_group(file.id(), "system");
+  EXPECT_THAT(std::get<std::vector<std::int64_t>>(read_dataset(system, "spring_group").values),
+              ElementsAre(0, 2, 2));
+  EXPECT_THAT(std::get<std::vector<std::string>>(read_dataset(system, "group_law").values),
+              ElementsAre("hooke", "strain", "tension_only"));
+  EXPECT_THAT(std::get<std::vector<std::string>>(read_dataset(system, "group_name").values),
+              ElementsAre("frame", "", "rope"));
+  EXPECT_THAT(dataset_shape(system, "springs"), ElementsAre(3U, 2U));
 }
 
 TEST(TrajectoryWriter, AFailedSolverGivesAValidFileThatSaysSo) {

@@ -26,14 +26,15 @@ class SolverOfAnotherSystem final : public Integrator {
   const ExtendedSolver& extended_solver() const override { return inner_->extended_solver(); }
 
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override {
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions& options) const override {
     Ivp other = ivp;
     if (const auto* springs = dynamic_cast<const mechanics::MassSpringSystem*>(ivp.system.get())) {
       mechanics::MassSpringModel model = springs->model();
       for (double& stiffness : model.springs.stiffness) stiffness *= factor_;
       other.system = std::make_shared<const mechanics::MassSpringSystem>(std::move(model));
     }
-    return inner_->solve(other, control, observer);
+    return inner_->solve(other, control, observer, options);
   }
 
   std::unique_ptr<Integrator> inner_;

@@ -3,6 +3,7 @@
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "memory_archive.hpp"
+#include "paths.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {
@@ -10,7 +11,7 @@ namespace {
 
 TEST(Convergence, HoldsForEverySchemeOfTheMassSpringStudy) {
   const CheckedTable spec =
-      CheckedTable::parse_file(FEDERWERK_SOURCE_DIR "/studies/convergence/mass_spring.toml");
+      CheckedTable::parse_file(fw::test::source_directory() + "/studies/convergence/mass_spring.toml");
   const Plan plan = read_plan(spec, catalog::study_kinds(), catalog::BuiltinCatalog(), true);
   MemoryArchive archive;
   const StudyResult result = run_plan(plan, archive, {});

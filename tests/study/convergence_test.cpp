@@ -6,6 +6,7 @@
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "memory_archive.hpp"
+#include "paths.hpp"
 #include "seeded_catalog.hpp"
 #include "seeded_schemes.hpp"
 #include "study/runner.hpp"
@@ -93,9 +94,9 @@ std::string convergence_spec(const std::string& methods, const std::string& prob
 }
 
 StudyResult run_text(const std::string& text, const Catalog& catalog) {
-  const Plan plan =
-      read_plan(CheckedTable::parse_text(text, FEDERWERK_SOURCE_DIR "/studies/convergence/test.toml"),
-                catalog::study_kinds(), catalog, false);
+  const Plan plan = read_plan(
+      CheckedTable::parse_text(text, fw::test::source_directory() + "/studies/convergence/test.toml"),
+      catalog::study_kinds(), catalog, false);
   MemoryArchive archive;
   return run_plan(plan, archive, {});
 }

@@ -6,6 +6,7 @@
 
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
+#include "paths.hpp"
 
 namespace fw::study {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 TEST(Plan, OfTheResolvedSpecificationHasTheSameCasesForEveryStudyOfTheProject) {
   const catalog::BuiltinCatalog catalog;
   std::size_t studies = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(FEDERWERK_SOURCE_DIR "/studies")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(fw::test::source_directory() + "/studies")) {
     if (entry.path().extension() != ".toml") continue;
     if (entry.path().string().find("/studies/scenes/") != std::string::npos) continue;
     SCOPED_TRACE(entry.path().string());

@@ -39,16 +39,15 @@ class SharedCounter {
 };
 
 PlannedCase simple_case(const std::string& id, std::function<void()> action = {}) {
-  return {.id = id, .identity = "identity of " + id, .run = [id, action](const RunContext&) {
-            if (action) action();
-            CaseResult result;
-            result.verdict = Verdict::holds;
-            result.reason = "ran";
-            result.summary = {{"value", "1", static_cast<double>(id.size())},
-                              {"verdict", "", std::string("holds")},
-                              {"reason", "", std::string("ran")}};
-            return result;
-          }};
+  return {
+      .id = id, .identity = "identity of " + id, .run = [id, action](const RunContext&) {
+        if (action) action();
+        CaseResult result;
+        result.verdict = Verdict::holds;
+        result.reason = "ran";
+        result.summary = {{"value", "1", static_cast<double>(id.size())}, {"count", "1", std::int64_t{3}}};
+        return result;
+      }};
 }
 
 Plan three_cases(std::function<void()> action = {}) {
@@ -56,6 +55,7 @@ Plan three_cases(std::function<void()> action = {}) {
           .title = "three",
           .spec = "",
           .seed = 0,
+          .summary = {{"value", "1", CellType::number, ""}, {"count", "1", CellType::integer, ""}},
           .cases = {simple_case("a"), simple_case("bb", std::move(action)), simple_case("ccc")}};
 }
 
@@ -98,20 +98,46 @@ TEST(RunPlan, TurnsAnExceptionIntoAFailedCaseAndGoesOn) {
   EXPECT_EQ(result.cases[1].verdict, Verdict::fails);
   EXPECT_EQ(result.cases[1].reason, "broken on purpose");
   ASSERT_EQ(result.cases[1].summary.size(), result.cases[0].summary.size());
-  EXPECT_EQ(std::get<std::string>(result.cases[1].summary[2].value), "broken on purpose");
+  EXPECT_TRUE(std::isnan(std::get<double>(result.cases[1].summary[0].value)));
+  EXPECT_EQ(std::get<std::int64_t>(result.cases[1].summary[1].value), missing_integer);
   EXPECT_EQ(archive.size(), 2u);  // the failed one is tried again next time
+}
+
+TEST(RunPlan, FailsACaseWhoseRowIsNotTheDeclaredOneWhenItReturns) {
+  MemoryArchive archive;
+  Plan plan = three_cases();
+  const auto with_row = [](std::vector<SummaryCell> row) {
+    return [row](const RunContext&) {
+      CaseResult result;
+      result.verdict = Verdict::holds;
+      result.summary = row;
+      return result;
+    };
+  };
+  plan.cases[0].run = with_row({{"value", "1", 1.0}});
+  plan.cases[1].run = with_row({{"value", "s", 1.0}, {"count", "1", std::int64_t{3}}});
+  plan.cases[2].run = with_row({{"value", "1", 1.0}, {"count", "1", 3.0}});
+  const StudyResult result = run_plan(plan, archive, {});
+  EXPECT_EQ(archive.size(), 0u);
+  const std::string head = "its row of the summary is not the one of its kind: ";
+  EXPECT_EQ(result.cases[0].reason, head + "found 1 cells, expected 2");
+  EXPECT_EQ(result.cases[1].reason, head + "cell 0 is \"value\" [s], expected \"value\" [1]");
+  EXPECT_EQ(result.cases[2].reason, head + "cell 1, \"count\", has another type than the kind declares");
+  for (const CaseResult& one : result.cases) EXPECT_EQ(row_mismatch(plan.summary, one.summary), "");
 }
 
 TEST(RunPlan, StopsAtAnInterruptAndSaysThatItIsIncomplete) {
   MemoryArchive archive;
   std::atomic<bool> interrupted{false};
   RunOptions options;
-  options.context.interrupted = &interrupted;
+  options.context.stop = StopToken(interrupted);
   options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
   Plan plan = three_cases();
   plan.cases[1].run = [](const RunContext& context) -> CaseResult {
-    while (!context.is_interrupted()) ::usleep(1000);
-    throw Interrupted{};
+    while (true) {
+      ::usleep(1000);
+      context.check();
+    }
   };
   const StudyResult result = run_plan(plan, archive, options);
   EXPECT_FALSE(result.complete);
@@ -124,7 +150,7 @@ TEST(RunPlan, EndsACaseThatDoesNotReactToAnInterrupt) {
   std::atomic<bool> interrupted{false};
   RunOptions options;
   options.patience = 0.1;
-  options.context.interrupted = &interrupted;
+  options.context.stop = StopToken(interrupted);
   options.waiting = [&](const RunProgress& progress) { interrupted = progress.done == 1; };
   const StudyResult result = run_plan(three_cases([] {
                                         while (true) ::pause();
@@ -219,7 +245,14 @@ TEST(RunPlan, BringsEveryKindOfColumnOverFromTheWorkerUnchanged) {
   sent.summary = {{"a", "s", 0.25}, {"b", "1", std::int64_t{7}}, {"c", "", std::string("text")}};
   sent.verdict = Verdict::not_applicable;
   sent.reason = "why";
-  Plan plan{.kind = "test", .title = "columns", .spec = "", .seed = 0, .cases = {}};
+  Plan plan{.kind = "test",
+            .title = "columns",
+            .spec = "",
+            .seed = 0,
+            .summary = {{"a", "s", CellType::number, ""},
+                        {"b", "1", CellType::integer, ""},
+                        {"c", "", CellType::text, ""}},
+            .cases = {}};
   plan.cases.push_back({.id = "one", .identity = "", .run = [&](const RunContext&) { return sent; }});
   MemoryArchive archive;
   const CaseResult got = run_plan(plan, archive, {}).cases.at(0);

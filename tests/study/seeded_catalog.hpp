@@ -23,32 +23,19 @@ class SeededCatalog final : public Catalog {
     const auto seed = seeds_.find(call);
     return seed != seeds_.end() ? seed->second() : builtin_.method(call);
   }
-  /// Of a seed with the name of a method of the catalogue: the coefficients of that method.
-  schemes::SchemeData scheme_data(const std::string& call) const override {
+  /// Of a seed: what it claims by `theory`; with the name of a method of the catalogue, that method's; else
+  /// nothing.
+  analysis::Theory theory(const std::string& call) const override {
+    const auto claimed = theory_.find(call);
+    if (claimed != theory_.end()) return builtin_.theory(claimed->second);
     const std::vector<std::string> known = builtin_.method_names();
     const bool is_new = seeds_.contains(call) && std::find(known.begin(), known.end(), call) == known.end();
-    return is_new ? schemes::SchemeData{} : builtin_.scheme_data(call);
+    return is_new ? analysis::Theory{} : builtin_.theory(call);
   }
   std::vector<std::string> method_names() const override {
     std::vector<std::string> names = builtin_.method_names();
     for (const auto& [name, make] : seeds_) names.push_back(name);
     return names;
-  }
-  schemes::SchemeData equivalent_scheme(const std::string& call) const override {
-    const auto claimed = theory_.find(call);
-    if (claimed != theory_.end()) return builtin_.equivalent_scheme(claimed->second);
-    return seeds_.contains(call) ? schemes::SchemeData{} : builtin_.equivalent_scheme(call);
-  }
-  analysis::LinearScheme linear_scheme(const std::string& call) const override {
-    const std::vector<std::string> known = builtin_.method_names();
-    const bool is_new = seeds_.contains(call) && std::find(known.begin(), known.end(), call) == known.end();
-    return is_new ? analysis::LinearScheme{} : builtin_.linear_scheme(call);
-  }
-  analysis::AmplificationFactors oscillator_theory(const std::string& call) const override {
-    const auto claimed = theory_.find(call);
-    if (claimed != theory_.end()) return builtin_.oscillator_theory(claimed->second);
-    if (seeds_.contains(call)) return {};
-    return builtin_.oscillator_theory(call);
   }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     return builtin_.problem(name, parameters);

@@ -33,7 +33,7 @@ inline std::unique_ptr<Integrator> seeded_scheme(std::string name, int order, Se
                   .family = "seeded",
                   .order = order,
                   .order_with_velocity_forces = order,
-                  .needs_second_order = true};
+                  .needs = {Capability::second_order}};
   return std::make_unique<integrators::FixedStepIntegrator>(
       std::move(info), [step](const Ivp& ivp, double, Work&) -> std::unique_ptr<integrators::Stepper> {
         return std::make_unique<SeededStepper>(ivp, step);

@@ -5,12 +5,13 @@
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "memory_archive.hpp"
+#include "paths.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {
 namespace {
 
-const char* const chain_study = FEDERWERK_SOURCE_DIR "/studies/stability/chain.toml";
+const std::string chain_study = fw::test::source_directory() + "/studies/stability/chain.toml";
 
 TEST(StabilityStudy, NamesEveryExplicitSchemeOfTheCatalogue) {
   const std::vector<std::string> listed = CheckedTable::parse_file(chain_study).strings("methods");

@@ -6,6 +6,7 @@
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "memory_archive.hpp"
+#include "paths.hpp"
 #include "study/runner.hpp"
 
 namespace fw::study {
@@ -13,7 +14,7 @@ namespace fw::study {
 /// Runs a study given as text; scenes are found as from a folder of studies/.
 inline StudyResult run_study(const std::string& text, const Catalog& catalog, bool quick = false) {
   const Plan plan =
-      read_plan(CheckedTable::parse_text(text, FEDERWERK_SOURCE_DIR "/studies/energy/test.toml"),
+      read_plan(CheckedTable::parse_text(text, fw::test::source_directory() + "/studies/energy/test.toml"),
                 catalog::study_kinds(), catalog, quick);
   MemoryArchive archive;
   return run_plan(plan, archive, {});

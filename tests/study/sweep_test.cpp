@@ -47,8 +47,10 @@ std::vector<std::string> ids_of(const Plan& plan) {
 }
 
 double number_in(const CaseResult& result, const std::string& name) {
-  for (const SummaryCell& cell : result.summary) {
-    if (cell.name == name) return std::get<double>(cell.value);
+  for (const auto* row : {&result.parameters, &result.summary}) {
+    for (const SummaryCell& cell : *row) {
+      if (cell.name == name) return std::get<double>(cell.value);
+    }
   }
   ADD_FAILURE() << "no column " << name;
   return 0.0;
@@ -75,7 +77,7 @@ TEST(Sweep, RunsTheInnerStudyAtEveryPointOfTheGrid) {
   const StudyResult result = result_of(plan);
   ASSERT_EQ(result.cases.size(), 6u);
   EXPECT_EQ(number_in(result.cases[2], "parameter_stiffness"), 2.5);
-  EXPECT_EQ(std::get<std::string>(result.cases[3].summary[1].value), "heun");
+  EXPECT_EQ(std::get<std::string>(result.cases[3].parameters[1].value), "heun");
 }
 
 TEST(Sweep, GivesTheNumbersOfTheStudyWithThatValueWrittenInIt) {
@@ -134,7 +136,7 @@ TEST(Sweep, LetsTheInnerStudyConcludeAtEveryPoint) {
                         true));
   std::size_t fronts = 0;
   for (const CaseResult& one : result.cases) {
-    EXPECT_EQ(one.summary.front().name, "parameter_stiffness");
+    EXPECT_EQ(one.parameters.front().name, "parameter_stiffness");
     for (const Column& column : one.columns) {
       if (column.name != "front_rhs_evaluations_method") continue;
       ++fronts;
@@ -210,6 +212,14 @@ TEST(Sweep, NamesThePointOfACaseThatCouldNotBeComputed) {
   EXPECT_EQ(number_in(result.cases.at(1), "parameter_stiffness"), 2.5);
 }
 
+/// The sections [[problem]] alone.
+struct Families {
+  std::vector<FamilySpec> problems;
+};
+void declare(settings::Archive& a, Families& families) {
+  a.sections(problem_sections, families.problems);
+}
+
 TEST_F(SweepOfAScene, FamiliesVaryANumberOfACatalogueProblemOrOfAScene) {
   std::vector<std::string> warnings;
   const CheckedTable spec = CheckedTable::parse_text(
@@ -219,9 +229,10 @@ TEST_F(SweepOfAScene, FamiliesVaryANumberOfACatalogueProblemOrOfAScene) {
       "[0, 0.5] }\n"
       "[[problem]]\nname = 'rotation'\n",
       (directory_ / "family.toml").string());
-  const std::vector<ProblemFamily> families =
-      read_problem_families(spec, catalog::BuiltinCatalog(), warnings);
-  spec.finish();
+  Families given;
+  const catalog::BuiltinCatalog catalog;
+  const StudyInput input{spec, settings::read(spec, given), catalog};
+  const std::vector<ProblemFamily> families = make_families(given.problems, input, warnings);
   ASSERT_EQ(families.size(), 3u);
   EXPECT_EQ(families[0].label, "harmonic_oscillator");
   ASSERT_EQ(families[0].members.size(), 3u);

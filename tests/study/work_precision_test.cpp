@@ -61,8 +61,9 @@ class Renamed final : public Integrator {
   const ExtendedSolver& extended_solver() const override { return inner_->extended_solver(); }
 
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override {
-    return inner_->solve(ivp, control, observer);
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions& options) const override {
+    return inner_->solve(ivp, control, observer, options);
   }
   std::unique_ptr<Integrator> inner_;
   MethodInfo info_;

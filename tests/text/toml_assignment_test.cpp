@@ -16,7 +16,7 @@ constexpr const char* document =
     "a = 1\nlist = [1, 2, 3]\n[t]\nx = 'old'\n[[p]]\nname = 'one'\n[[p]]\nname = 'two'\n";
 
 CheckedTable with(const std::vector<TomlAssignment>& assignments) {
-  return CheckedTable::parse_text(toml_with(document, "doc", assignments), "doc");
+  return CheckedTable::parse_text(document, "doc").with(assignments, "doc");
 }
 
 TEST(TomlAssignment, ReplacesValuesAndAddsMissingOnesWithTheirTables) {
@@ -50,7 +50,6 @@ TEST(TomlAssignment, RefusesPathsThatLeadNowhere) {
   refuses("p[2].name", "found index 2, expected less than 2");
   refuses("a.b", "what should hold \"b\" is no table");
   refuses("t[0]", "is no list");
-  EXPECT_THAT([] { toml_with("a = = 1", "doc", {}); }, ThrowsMessage<InputError>(HasSubstr("doc:1")));
 }
 
 }  // namespace

@@ -37,8 +37,7 @@ Ivp oscillator(double mass, double stiffness, double end_time) {
 /// (q, v·scale) of every step until the amplitude leaves the range.
 class StateHistory final : public Observer {
  public:
-  StateHistory(double velocity_scale, const std::function<bool()>& is_interrupted)
-      : scale_(velocity_scale), is_interrupted_(is_interrupted) {}
+  explicit StateHistory(double velocity_scale) : scale_(velocity_scale) {}
 
   bool observe(const StepView& view) override {
     const double q = view.state[0], v = scale_ * view.state[1];
@@ -46,7 +45,7 @@ class StateHistory final : public Observer {
     if (!(size > smallest && size < largest)) return false;
     positions.push_back(q);
     velocities.push_back(v);
-    return !(is_interrupted_ && is_interrupted_());
+    return true;
   }
   std::size_t size() const { return positions.size(); }
   double norm(std::size_t n) const { return std::hypot(positions[n], velocities[n]); }
@@ -56,7 +55,6 @@ class StateHistory final : public Observer {
  private:
   static constexpr double smallest = 1e-60, largest = 1e60;  // norms of solvers square and multiply
   double scale_;
-  const std::function<bool()>& is_interrupted_;
 };
 
 /// The first step of the window.
@@ -116,10 +114,12 @@ MeasuredOscillation measure_oscillation(const Integrator& integrator, double mas
   const double window = std::ceil(run.periods * 2.0 * std::numbers::pi / z);
   const double steps = run.transient_steps + std::max(window, static_cast<double>(fewest_steps)) +
                        2.0 * static_cast<double>(lag);
-  StateHistory history(1.0 / omega, run.is_interrupted);
+  StateHistory history(1.0 / omega);
   MeasuredOscillation measured;
   measured.status =
-      integrator.solve(oscillator(mass, stiffness, steps * h), FixedStep{.step = h}, history).status;
+      integrator
+          .solve(oscillator(mass, stiffness, steps * h), FixedStep{.step = h}, history, {.stop = run.stop})
+          .status;
   if (measured.status.code == StatusCode::stopped_by_observer) measured.status = {};
 
   const Recurrence fit = fit_recurrence(history, window_start(history, run.transient_steps), lag);
@@ -145,9 +145,9 @@ double measure_radius_at_infinity(const Integrator& integrator, double mass, dou
                                   const OscillationRun& run) {
   constexpr double most_steps = 2000.0;
   const double h = z / std::sqrt(stiffness / mass);
-  StateHistory history(h, run.is_interrupted);
-  const Solution solution =
-      integrator.solve(oscillator(mass, stiffness, most_steps * h), FixedStep{.step = h}, history);
+  StateHistory history(h);
+  const Solution solution = integrator.solve(oscillator(mass, stiffness, most_steps * h),
+                                             FixedStep{.step = h}, history, {.stop = run.stop});
   const bool ran = solution.status.ok() || solution.status.code == StatusCode::stopped_by_observer;
   if (!ran || history.size() < 3) return ran && history.size() > 0 ? 0.0 : none;
   const std::size_t n = (history.size() - 1) / 2;

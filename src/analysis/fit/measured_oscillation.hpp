@@ -13,7 +13,7 @@ struct OscillationRun {
   /// Steps before the window, in which parasitic factors die out; fewer where the amplitude leaves
   /// [1e-30, 1e30] before.
   int transient_steps = 400;
-  std::function<bool()> is_interrupted{};  ///< asked after every step; empty: never
+  StopToken stop{};  ///< can end the run
 };
 
 /// The principal factor of a scheme as a run of it shows it.

@@ -13,15 +13,6 @@ namespace fw::analysis {
 
 namespace {
 
-class StopWhenAsked final : public Observer {
- public:
-  explicit StopWhenAsked(const std::function<bool()>& is_interrupted) : is_interrupted_(is_interrupted) {}
-  bool observe(const StepView&) override { return !is_interrupted_ || !is_interrupted_(); }
-
- private:
-  const std::function<bool()>& is_interrupted_;
-};
-
 std::unique_ptr<Integrator> make(const std::string& name) {
   for (const schemes::ButcherTableau& tableau : schemes::high_order_explicit_tableaus()) {
     if (tableau.name == name) return integrators::make_explicit_runge_kutta(tableau);
@@ -29,14 +20,13 @@ std::unique_ptr<Integrator> make(const std::string& name) {
   throw std::logic_error("no explicit tableau of the name " + name);
 }
 
-Solution solve(const Ivp& ivp, const Integrator& integrator, double tolerance,
-               const std::function<bool()>& is_interrupted) {
+Solution solve(const Ivp& ivp, const Integrator& integrator, double tolerance, StopToken stop) {
   const double size = std::max(ivp.y0.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
   const AdaptiveStep control{.relative_tolerance = tolerance,
                              .absolute_tolerance = 1e-1 * tolerance * size,
                              .maximum_step = (ivp.t1 - ivp.t0) / 64.0};
-  StopWhenAsked observer(is_interrupted);
-  return integrator.solve(ivp, control, observer);
+  NullObserver observer;
+  return integrator.solve(ivp, control, observer, {.stop = stop});
 }
 
 /// Writes the largest entry of |difference| into all of `error`, at least the rounding of the state.
@@ -51,17 +41,17 @@ void bound(const Vector& difference, const Vector& state, Index first, Index cou
 
 }  // namespace
 
-ReferenceSolution binary64_reference(const Ivp& ivp, const std::function<bool()>& is_interrupted) {
+ReferenceSolution binary64_reference(const Ivp& ivp, StopToken stop) {
   // Tighter tolerances drown in rounding where springs are stiff: h (k/m) x eps is the noise of a step.
   // Their order conditions take longer than many a run.
   static const std::unique_ptr<Integrator> fine_method = make("dormand_prince_853");
   static const std::unique_ptr<Integrator> coarse_method = make("verner_87");
   ReferenceSolution reference;
-  const Solution fine = solve(ivp, *fine_method, 1e-11, is_interrupted);
+  const Solution fine = solve(ivp, *fine_method, 1e-11, stop);
   reference.work = fine.work;
   reference.status = fine.status;
   if (!fine.status.ok()) return reference;
-  const Solution coarse = solve(ivp, *coarse_method, 1e-10, is_interrupted);
+  const Solution coarse = solve(ivp, *coarse_method, 1e-10, stop);
   reference.work.rhs_evaluations += coarse.work.rhs_evaluations;
   reference.work.seconds += coarse.work.seconds;
   reference.status = coarse.status;

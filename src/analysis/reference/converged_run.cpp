@@ -8,15 +8,6 @@ namespace fw::analysis {
 
 namespace {
 
-class StopWhenAsked final : public Observer {
- public:
-  explicit StopWhenAsked(const std::function<bool()>& is_interrupted) : is_interrupted_(is_interrupted) {}
-  bool observe(const StepView&) override { return !is_interrupted_ || !is_interrupted_(); }
-
- private:
-  const std::function<bool()>& is_interrupted_;
-};
-
 /// Differences that fall by less than this are taken to fall by this: they are noise or do not converge, and
 /// the estimate then is ten times the difference.
 constexpr double smallest_ratio = 1.1;
@@ -33,10 +24,10 @@ class Refinement {
   /// Runs once more. `expected_ratio` is by how much a difference can at most be smaller than the one before.
   /// Returns whether to go on.
   bool refine(const StepControl& control, double expected_ratio) {
-    StopWhenAsked observer(goal_.is_interrupted);
-    Solution solution = integrator_.solve(ivp_, control, observer);
+    NullObserver observer;
+    Solution solution = integrator_.solve(ivp_, control, observer, {.stop = goal_.stop});
     result_.status = solution.status;
-    if (solution.status.code == StatusCode::stopped_by_observer) return false;
+    if (solution.status.code == StatusCode::interrupted) return false;
     if (solution.status.code == StatusCode::step_limit) return false;  // a finer run needs even more
     if (!solution.status.ok()) {
       previous_difference_ = std::numeric_limits<double>::infinity();

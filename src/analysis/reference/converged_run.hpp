@@ -10,13 +10,13 @@ namespace fw::analysis {
 
 /// How far a solution is refined, and what that may cost.
 struct RefinementGoal {
-  double error = 1e-8;                     ///< the estimate that ends the refinement, in the norm given
-  std::uint64_t fewest_steps = 16;         ///< of the first run with constant steps
-  std::uint64_t most_steps = 8192;         ///< of one run; adaptive methods may take 16 times as many
-  double first_tolerance = 1e-6;           ///< relative tolerance of an adaptive method's first run
-  double smallest_tolerance = 1e-12;       ///< of its last
-  double absolute_over_relative = 1e-2;    ///< absolute tolerance in units of the relative one
-  std::function<bool()> is_interrupted{};  ///< asked after every step; empty: never
+  double error = 1e-8;                   ///< the estimate that ends the refinement, in the norm given
+  std::uint64_t fewest_steps = 16;       ///< of the first run with constant steps
+  std::uint64_t most_steps = 8192;       ///< of one run; adaptive methods may take 16 times as many
+  double first_tolerance = 1e-6;         ///< relative tolerance of an adaptive method's first run
+  double smallest_tolerance = 1e-12;     ///< of its last
+  double absolute_over_relative = 1e-2;  ///< absolute tolerance in units of the relative one
+  StopToken stop{};                      ///< can end a run, and the refinement with it
 };
 
 /// A solution with an estimate of its own error, which no other solver had a part in.

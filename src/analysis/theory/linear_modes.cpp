@@ -1,10 +1,10 @@
 #include "analysis/theory/linear_modes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "dense/eigenvalues.hpp"
 #include "linalg/extreme_eigenvalues.hpp"
 
 namespace fw::analysis {
@@ -94,10 +94,10 @@ LinearModes dense_modes(const SecondOrderSystem& system, double t, ConstVectorRe
   const auto n = static_cast<Index>(moving.size());
   if (n == 0) return modes;
 
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(modes.stiffness);
-  const Matrix modal = solver.eigenvectors().transpose() * modes.damping * solver.eigenvectors();
+  const dense::SymmetricEigen eigen = dense::symmetric_eigen(modes.stiffness);
+  const Matrix modal = eigen.vectors.transpose() * modes.damping * eigen.vectors;
   const double most_damping = modal.cwiseAbs().maxCoeff();
-  const double largest_square = solver.eigenvalues().cwiseAbs().maxCoeff();
+  const double largest_square = eigen.values.cwiseAbs().maxCoeff();
   // Whatever C does inside an eigenspace of W is diagonal in the right basis of it, so only entries between
   // different frequencies couple; where the choice of basis matters the dense J below decides.
   if (most_damping > 0.0) {
@@ -107,7 +107,7 @@ LinearModes dense_modes(const SecondOrderSystem& system, double t, ConstVectorRe
   }
   std::vector<Complex> roots;
   for (Index i = 0; i < n; ++i) {
-    VibrationMode mode{solver.eigenvalues()[i], modal(i, i)};
+    VibrationMode mode{eigen.values[i], modal(i, i)};
     if (std::abs(mode.omega_squared) <= negligible_square * largest_square) mode.omega_squared = 0.0;
     if (std::abs(mode.damping) <= negligible * most_damping) mode.damping = 0.0;
     if (modes.coupling == 0.0) add_roots(mode, roots);
@@ -117,7 +117,7 @@ LinearModes dense_modes(const SecondOrderSystem& system, double t, ConstVectorRe
     Vector& shape = modes.shapes.emplace_back(Vector::Zero(system.degrees_of_freedom()));
     for (Index k = 0; k < n; ++k) {
       const Index place = moving[static_cast<std::size_t>(k)];
-      shape[place] = solver.eigenvectors()(k, i) / std::sqrt(system.mass()[place]);
+      shape[place] = eigen.vectors(k, i) / std::sqrt(system.mass()[place]);
     }
   }
   if (modes.coupling == 0.0) {
@@ -128,7 +128,7 @@ LinearModes dense_modes(const SecondOrderSystem& system, double t, ConstVectorRe
     J.topRightCorner(n, n).setIdentity();
     J.bottomLeftCorner(n, n) = -modes.stiffness;
     J.bottomRightCorner(n, n) = -modes.damping;
-    keep_eigenvalues(Eigen::EigenSolver<Matrix>(J, false).eigenvalues(), modes);
+    keep_eigenvalues(dense::eigenvalues(J), modes);
   }
   return modes;
 }
@@ -227,8 +227,7 @@ LinearModes linear_modes(const OdeSystem& system, double t, ConstVectorRef y, In
     return from_extreme(
         linalg::extreme_eigenvalues(J, {.count = most_extreme_eigenvalues, .tolerance = 1e-8}));
   LinearModes modes;
-  const Matrix dense(J);
-  keep_eigenvalues(Eigen::EigenSolver<Matrix>(dense, false).eigenvalues(), modes);
+  keep_eigenvalues(dense::eigenvalues(Matrix(J)), modes);
   return modes;
 }
 

@@ -66,6 +66,7 @@ LinearisedSystem::LinearisedSystem(const SecondOrderSystem& original, double t, 
       fixed_(original.fixed()),
       force_class_(original.force_class()),
       pattern_(original.tangent_pattern()),
+      blocks_(pattern_),
       stiffness_(pattern_),
       damping_(pattern_) {
   original.stiffness(t, q, v, TangentModel::exact, stiffness_);
@@ -115,34 +116,11 @@ void LinearisedSystem::rhs(double, std::span<const Complex> y, std::span<Complex
 }
 
 SparseMatrix LinearisedSystem::jacobian_pattern() const {
-  const auto n = static_cast<int>(mass_.size());
-  std::vector<Eigen::Triplet<double, int>> entries;
-  for (int i = 0; i < n; ++i) {
-    entries.emplace_back(i, i, 0.0);
-    entries.emplace_back(i, n + i, 0.0);
-    entries.emplace_back(n + i, n + i, 0.0);
-  }
-  for (int j = 0; j < n; ++j) {
-    for (SparseMatrix::InnerIterator entry(pattern_, j); entry; ++entry) {
-      entries.emplace_back(n + static_cast<int>(entry.row()), j, 0.0);
-      entries.emplace_back(n + static_cast<int>(entry.row()), n + j, 0.0);
-    }
-  }
-  SparseMatrix pattern(2 * n, 2 * n);
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  return pattern;
+  return blocks_.pattern();
 }
 
 void LinearisedSystem::jacobian(double, ConstVectorRef, SparseMatrix& J) const {
-  const auto n = static_cast<int>(mass_.size());
-  J.coeffs().setZero();
-  for (int j = 0; j < n; ++j) {
-    J.coeffRef(j, n + j) = 1.0;
-    for (SparseMatrix::InnerIterator entry(stiffness_, j); entry; ++entry)
-      J.coeffRef(n + static_cast<int>(entry.row()), j) = entry.value() / mass_[entry.row()];
-    for (SparseMatrix::InnerIterator entry(damping_, j); entry; ++entry)
-      J.coeffRef(n + static_cast<int>(entry.row()), n + j) = entry.value() / mass_[entry.row()];
-  }
+  blocks_.fill(stiffness_, damping_, mass_, J);
 }
 
 void LinearisedSystem::jacobian_product(double t, ConstVectorRef, ConstVectorRef w, VectorRef out) const {

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "ode/first_order_jacobian.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw::analysis {
@@ -29,7 +30,6 @@ class LinearisedSystem final : public OdeSystem, public SecondOrderSystem {
   const Vector& mass() const override { return mass_; }
   const std::vector<char>& fixed() const override { return fixed_; }
   ForceClass force_class() const override { return force_class_; }
-  bool has_springs() const override { return false; }
   void force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const override;
   SparseMatrix tangent_pattern() const override { return pattern_; }
   void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
@@ -47,7 +47,9 @@ class LinearisedSystem final : public OdeSystem, public SecondOrderSystem {
   Vector mass_;
   std::vector<char> fixed_;
   ForceClass force_class_;
-  SparseMatrix pattern_, stiffness_, damping_;
+  SparseMatrix pattern_;
+  FirstOrderJacobian blocks_;
+  SparseMatrix stiffness_, damping_;
   std::shared_ptr<const ForceSplitting> splitting_;
 };
 

@@ -1,9 +1,23 @@
 #include "analysis/theory/modified_energy.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 namespace fw::analysis {
+
+namespace {
+
+bool has_coefficients(const schemes::SplittingScheme& scheme, const schemes::CoefficientRow& drift,
+                      const schemes::CoefficientRow& kick) {
+  const auto same = [](const schemes::CoefficientRow& a, const schemes::CoefficientRow& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& x, const auto& y) { return x.value() == y.value(); });
+  };
+  return same(scheme.drift, drift) && same(scheme.kick, kick);
+}
+
+}  // namespace
 
 bool is_linear_oscillation(const OdeSystem& system) {
   const SecondOrderSystem* mechanics = system.second_order();
@@ -23,25 +37,37 @@ bool is_linear_oscillation(const OdeSystem& system) {
   return scale > 0.0 && additive && symmetric;
 }
 
-ModifiedEnergy modified_energy(const std::string& method, const Ivp& ivp, double h,
-                               std::function<double(double t, ConstVectorRef y)> energy) {
-  if (!is_linear_oscillation(*ivp.system)) return {};
+EnergyFunction velocity_verlet_energy(const Ivp& ivp, double h, EnergyFunction energy) {
   const SecondOrderSystem& mechanics = *ivp.system->second_order();
   const Index n = mechanics.degrees_of_freedom();
   const auto force = std::make_shared<Vector>(n);  // reused from call to call
-  if (method == "velocity_verlet" || method == "verlet") {
-    return [=, &mechanics, system = ivp.system](double t, ConstVectorRef y) {
-      mechanics.force(t, y.head(n), y.tail(n), *force);
-      return energy(t, y) - 0.125 * h * h * force->cwiseAbs2().cwiseQuotient(mechanics.mass()).sum();
-    };
-  }
-  if (method == "symplectic_euler") {
-    return [=, &mechanics, system = ivp.system](double t, ConstVectorRef y) {
-      mechanics.force(t, y.head(n), y.tail(n), *force);
-      return energy(t, y) + 0.5 * h * force->dot(y.tail(n));
-    };
-  }
-  return {};
+  return [=, &mechanics, system = ivp.system](double t, ConstVectorRef y) {
+    mechanics.force(t, y.head(n), y.tail(n), *force);
+    return energy(t, y) - 0.125 * h * h * force->cwiseAbs2().cwiseQuotient(mechanics.mass()).sum();
+  };
+}
+
+EnergyFunction symplectic_euler_energy(const Ivp& ivp, double h, EnergyFunction energy) {
+  const SecondOrderSystem& mechanics = *ivp.system->second_order();
+  const Index n = mechanics.degrees_of_freedom();
+  const auto force = std::make_shared<Vector>(n);
+  return [=, &mechanics, system = ivp.system](double t, ConstVectorRef y) {
+    mechanics.force(t, y.head(n), y.tail(n), *force);
+    return energy(t, y) + 0.5 * h * force->dot(y.tail(n));
+  };
+}
+
+ModifiedEnergyRule modified_energy_rule(const schemes::SchemeData& data) {
+  const auto* splitting = std::get_if<schemes::SplittingScheme>(&data);
+  if (splitting == nullptr) return nullptr;
+  if (has_coefficients(*splitting, {0, 1, 0}, {"1/2", "1/2"})) return velocity_verlet_energy;
+  if (has_coefficients(*splitting, {0, 1}, {1})) return symplectic_euler_energy;
+  return nullptr;
+}
+
+EnergyFunction modified_energy(ModifiedEnergyRule rule, const Ivp& ivp, double h, EnergyFunction energy) {
+  if (rule == nullptr || !is_linear_oscillation(*ivp.system)) return {};
+  return rule(ivp, h, std::move(energy));
 }
 
 }  // namespace fw::analysis

@@ -6,8 +6,8 @@
 #include <limits>
 #include <memory>
 
+#include "schemes/linear_form.hpp"
 #include "schemes/multistep_properties.hpp"
-#include "schemes/stability_function.hpp"
 
 namespace fw::analysis {
 
@@ -61,18 +61,11 @@ AmplificationFactors of_nystrom(const schemes::NystromValues<Float128>& t) {
 
 struct FactorsOf {
   AmplificationFactors operator()(std::monostate) const { return {}; }
-  AmplificationFactors operator()(const schemes::AdditiveTableau&) const { return {}; }
-  AmplificationFactors operator()(const schemes::ButcherTableau& tableau) const {
-    return of_stability_function(schemes::stability_function(tableau));
+  AmplificationFactors operator()(const schemes::StabilityFunction& R) const {
+    return of_stability_function(R);
   }
-  AmplificationFactors operator()(const schemes::RosenbrockTableau& tableau) const {
-    return of_stability_function(schemes::stability_function(tableau));
-  }
-  AmplificationFactors operator()(const schemes::NystromTableau& tableau) const {
-    return of_nystrom(schemes::values<Float128>(tableau));
-  }
-  AmplificationFactors operator()(const schemes::SplittingScheme& scheme) const {
-    return of_nystrom(schemes::as_nystrom(scheme));
+  AmplificationFactors operator()(const schemes::NystromValues<Float128>& values) const {
+    return of_nystrom(values);
   }
   AmplificationFactors operator()(const schemes::MultistepFormula& formula) const {
     return [formula](double z) {
@@ -137,7 +130,7 @@ class PrincipalFactor {
 }  // namespace
 
 AmplificationFactors amplification_factors(const schemes::SchemeData& data) {
-  return std::visit(FactorsOf{}, data);
+  return std::visit(FactorsOf{}, schemes::linear_form(data));
 }
 
 AmplificationFactors amplification_factors(const integrators::AlphaParameters& parameters) {
@@ -154,6 +147,21 @@ AmplificationFactors amplification_factors(const integrators::AlphaParameters& p
 
 AmplificationFactors exact_amplification_factors() {
   return [](double z) { return std::vector<Complex>{std::polar(1.0, z), std::polar(1.0, -z)}; };
+}
+
+AmplificationFactors amplification_factors(const LinearScheme& scheme) {
+  switch (scheme.rule) {
+    case LinearRule::of_coefficients:
+      return amplification_factors(scheme.data);
+    case LinearRule::exact:
+      return exact_amplification_factors();
+    case LinearRule::alpha_family:
+      return amplification_factors(scheme.alpha);
+    case LinearRule::verlet_central_velocity:
+    case LinearRule::verlet_backward_velocity:
+      break;
+  }
+  return {};
 }
 
 double NumericalOscillation::damping_ratio() const {

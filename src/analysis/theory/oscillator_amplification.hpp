@@ -3,9 +3,8 @@
 #include <functional>
 #include <vector>
 
+#include "analysis/theory/linear_scheme.hpp"
 #include "core/types.hpp"
-#include "integrators/structural/alpha_family.hpp"
-#include "schemes/scheme_data.hpp"
 
 namespace fw::analysis {
 
@@ -26,6 +25,10 @@ AmplificationFactors amplification_factors(const integrators::AlphaParameters& p
 
 /// cos z ± i sin z: of schemes that are exact on linear oscillators.
 AmplificationFactors exact_amplification_factors();
+
+/// Those of the coefficients or of the rule; empty where neither says anything, and of Verlet's rules, whose
+/// factors are those of velocity Verlet's coefficients.
+AmplificationFactors amplification_factors(const LinearScheme& scheme);
 
 /// What a scheme makes of an oscillation with z = ωh.
 struct NumericalOscillation {

@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "analysis/theory/linear_modes.hpp"
+#include "analysis/theory/linear_scheme.hpp"
 #include "ode/integrator.hpp"
 #include "schemes/scheme_data.hpp"
 #include "schemes/stability_function.hpp"
 
 namespace fw::analysis {
+
+class NystromStages;
 
 /// Where the growth of a scheme is taken from.
 enum class GrowthBasis {
@@ -18,29 +21,15 @@ enum class GrowthBasis {
   characteristic_polynomial,  ///< ρ(ζ) − zσ(ζ) of a multistep formula
   oscillator_matrix,          ///< stages of a Nyström method or splitting on z̈ = −ω²z − cż
   two_step_recurrence,        ///< Verlet's x_{n+1} = P x_n + Q x_{n−1}
+  amplification_matrix,       ///< of Newmark's scheme and its relatives on (z, hż, h²z̈)
   exponential,                ///< e^z of schemes that are exact on linear systems
   single_steps,  ///< the matrix of single steps of the running code: no prediction, since the runs that it
                  ///< is held against are made of the same steps
 };
 
-/// "R(z)", "characteristic polynomial", "oscillator matrix", "two-step recurrence", "exp(z)", "single steps".
+/// "R(z)", "characteristic polynomial", "oscillator matrix", "two-step recurrence",
+/// "amplification matrix", "exp(z)", "single steps".
 std::string_view to_string(GrowthBasis basis);
-
-/// What a scheme does on linear systems where no coefficients say so.
-enum class LinearRule {
-  of_coefficients,
-  exact,  ///< the solution itself
-  /// Verlet with v_n = (x_{n+1} − x_{n−1})/2h: (1 + hC/2) x_{n+1} = (2 − h²W) x_n − (1 − hC/2) x_{n−1}.
-  verlet_central_velocity,
-  /// Verlet with v_n = (x_n − x_{n−1})/h: x_{n+1} = (2 − h²W − hC) x_n − (1 − hC) x_{n−1}.
-  verlet_backward_velocity,
-};
-
-/// A scheme as linear systems see it.
-struct LinearScheme {
-  schemes::SchemeData data{};  ///< of the scheme that it is on them; std::monostate: see `rule`
-  LinearRule rule = LinearRule::of_coefficients;
-};
 
 /// By how much a scheme multiplies the modes of a linear system in a step: the spectral radius of its step
 /// [Hairer, Wanner 1996, IV.2 and V.1; Hairer, Lubich, Wanner 2006, VIII; van der Houwen, Sommeijer 1987].
@@ -82,17 +71,18 @@ class SchemeGrowth {
   const std::optional<schemes::StabilityFunction>& stability_function() const { return R_; }
 
  private:
-  struct Stages;
   double of_single_steps_on_vibration(double a, double b) const;
-  bool find_growth_at_every_step(const schemes::SchemeData& data) const;
+  bool find_growth_at_every_step() const;
   bool is_by_eigenvalue() const;
 
   std::shared_ptr<const Integrator> integrator_;
   GrowthBasis basis_;
   LinearRule rule_;
+  integrators::AlphaParameters alpha_;
   std::optional<schemes::StabilityFunction> R_;
   std::optional<schemes::MultistepFormula> formula_;
-  std::shared_ptr<const Stages> stages_;
+  std::optional<schemes::NystromValues<Float128>> nystrom_;
+  std::shared_ptr<const NystromStages> stages_;
   bool grows_at_every_step_ = false;
 };
 

@@ -20,8 +20,8 @@ constexpr double vanishing = 1e-100;
 
 class QuarterMaxima final : public Observer {
  public:
-  QuarterMaxima(const Vector& weight, std::int64_t steps, const std::function<bool()>& is_interrupted)
-      : weight_(weight), steps_(static_cast<std::uint64_t>(steps)), is_interrupted_(is_interrupted) {}
+  QuarterMaxima(const Vector& weight, std::int64_t steps)
+      : weight_(weight), steps_(static_cast<std::uint64_t>(steps)) {}
 
   bool observe(const StepView& view) override {
     const double norm = weight_.cwiseProduct(view.state).norm();
@@ -31,21 +31,18 @@ class QuarterMaxima final : public Observer {
     last_ = view.index;
     if (norm > clear_growth * start_) has_blown_up_ = true;
     if (norm < vanishing * start_) has_vanished_ = true;
-    interrupted_ = is_interrupted_ && is_interrupted_();
-    return !has_blown_up_ && !has_vanished_ && !interrupted_;
+    return !has_blown_up_ && !has_vanished_;
   }
 
-  bool interrupted() const { return interrupted_; }
   bool has_blown_up() const { return has_blown_up_; }
   double maximum(int quarter) const { return maximum_[quarter]; }
 
  private:
   const Vector& weight_;
   std::uint64_t steps_, last_ = 0;
-  const std::function<bool()>& is_interrupted_;
   double start_ = 0.0;
   double maximum_[4] = {0.0, 0.0, 0.0, 0.0};
-  bool has_blown_up_ = false, has_vanished_ = false, interrupted_ = false;
+  bool has_blown_up_ = false, has_vanished_ = false;
 };
 
 class SignWatch final : public Observer {
@@ -115,13 +112,13 @@ double largest_stable_step(const std::function<bool(double)>& is_stable, const L
 
 GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
                                    std::shared_ptr<const OdeSystem> system, double t0, double frequency,
-                                   std::uint64_t seed, std::function<bool()> is_interrupted)
+                                   std::uint64_t seed, StopToken stop)
     : integrator_(std::move(integrator)),
       system_(std::move(system)),
       t0_(t0),
       start_(system_->size()),
       weight_(Vector::Ones(system_->size())),
-      is_interrupted_(std::move(is_interrupted)) {
+      stop_(stop) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (Index i = 0; i < start_.size(); ++i) start_[i] = amplitude * uniform(random);
@@ -137,13 +134,13 @@ GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
 
 GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
                                    std::shared_ptr<const OdeSystem> system, double t0, const Vector& shape,
-                                   double frequency, std::function<bool()> is_interrupted)
+                                   double frequency, StopToken stop)
     : integrator_(std::move(integrator)),
       system_(std::move(system)),
       t0_(t0),
       start_(system_->size()),
       weight_(system_->size()),
-      is_interrupted_(std::move(is_interrupted)) {
+      stop_(stop) {
   const Vector root_mass = system_->second_order()->mass().cwiseSqrt();
   weight_ << frequency * root_mass, root_mass;
   constexpr double phase = 1.0;
@@ -151,12 +148,11 @@ GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,
 }
 
 GrowthExperiment::Outcome GrowthExperiment::run(double step, std::int64_t steps) const {
-  QuarterMaxima observer(weight_, steps, is_interrupted_);
+  QuarterMaxima observer(weight_, steps);
   const Ivp ivp{system_, t0_, t0_ + step * static_cast<double>(steps), start_, {}};
-  const Solution solution =
-      integrator_->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, observer);
+  const Solution solution = integrator_->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false},
+                                               observer, {.stop = stop_});
   Outcome outcome;
-  outcome.is_interrupted = observer.interrupted();
   if (observer.has_blown_up() ||
       (!solution.status.ok() && solution.status.code != StatusCode::stopped_by_observer)) {
     outcome.growth = infinity;

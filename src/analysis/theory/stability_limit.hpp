@@ -31,14 +31,14 @@ double largest_stable_step(const std::function<bool(double step)>& is_stable, co
 class GrowthExperiment {
  public:
   /// The perturbation is drawn from `seed`: every moving degree of freedom between −1 and 1 in units of
-  /// `amplitude`, velocities in units of amplitude·`frequency`. `is_interrupted` is asked after every step.
+  /// `amplitude`, velocities in units of amplitude·`frequency`. `stop` can end a run.
   GrowthExperiment(std::shared_ptr<const Integrator> integrator, std::shared_ptr<const OdeSystem> system,
-                   double t0, double frequency, std::uint64_t seed, std::function<bool()> is_interrupted);
+                   double t0, double frequency, std::uint64_t seed, StopToken stop);
 
   /// From the vibration of one mode: its shape, its frequency ω, its energy as the norm. A scheme that treats
   /// every eigenvalue of J by itself multiplies that norm by |R(iωh)| in every step, to rounding.
   GrowthExperiment(std::shared_ptr<const Integrator> integrator, std::shared_ptr<const OdeSystem> system,
-                   double t0, const Vector& shape, double frequency, std::function<bool()> is_interrupted);
+                   double t0, const Vector& shape, double frequency, StopToken stop);
 
   struct Outcome {
     /// Largest norm in the last quarter of the run over that in the first; infinite where a step fails or the
@@ -46,8 +46,7 @@ class GrowthExperiment {
     double growth = 0.0;
     /// ln of the factor per step, between the second and the fourth quarter; NaN where a step fails.
     double rate = 0.0;
-    bool is_interrupted = false;
-    Status status{};  ///< why a step failed
+    Status status{};  ///< why a step failed, or interrupted
   };
   Outcome run(double step, std::int64_t steps) const;
 
@@ -56,7 +55,7 @@ class GrowthExperiment {
   std::shared_ptr<const OdeSystem> system_;
   double t0_;
   Vector start_, weight_;  ///< the norm is ‖weight·y‖
-  std::function<bool()> is_interrupted_;
+  StopToken stop_;
 };
 
 /// Whether a run on ẏ = λy, λ < 0, changes its sign within `steps` steps.

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "schemes/linear_form.hpp"
 #include "schemes/multistep_properties.hpp"
-#include "schemes/stability_function.hpp"
 
 namespace fw::analysis {
 
@@ -133,28 +133,10 @@ StiffOrder stiff_order(const schemes::MultistepFormula& formula) {
   return result;
 }
 
-}  // namespace
-
-std::string StiffOrder::formula() const {
-  // (hλ)^{−m} h^k, with one power less where errors add up.
-  const int of_step = order;
-  const std::string step = of_step == 0 ? "1" : of_step == 1 ? "h" : fmt::format("h^{}", of_step);
-  if (power_of_product == 0) return step;
-  return power_of_product == 1 ? step + "/lambda" : fmt::format("{}/lambda^{}", step, power_of_product);
-}
-
-StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lambda) {
-  if (const auto* formula = std::get_if<schemes::MultistepFormula>(&data)) return stiff_order(*formula);
+/// Of stages with the stability function R.
+StiffOrder stiff_order(const StageData& stages, const schemes::StabilityFunction& R, double step,
+                       double lambda) {
   StiffOrder result;
-  const std::optional<StageData> stages = stage_data(data);
-  if (!stages) {
-    result.reason = "no coefficients of a Runge-Kutta, Rosenbrock or multistep scheme";
-    return result;
-  }
-  const schemes::StabilityFunction R =
-      std::holds_alternative<schemes::ButcherTableau>(data)
-          ? schemes::stability_function(std::get<schemes::ButcherTableau>(data))
-          : schemes::stability_function(std::get<schemes::RosenbrockTableau>(data));
   if (R.numerator.size() > R.denominator.size()) {
     result.reason = "the scheme is explicit: |R| grows without bound";
     return result;
@@ -169,11 +151,11 @@ StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lamb
   double largest = 0.0, second = 0.0, factor = 1.0;
   for (int k = 1; k <= most_terms; ++k) {
     factor *= step / k;
-    const double near = std::abs(local_coefficient(*stages, k, far_out));
-    const double far = std::abs(local_coefficient(*stages, k, farther_out));
+    const double near = std::abs(local_coefficient(stages, k, far_out));
+    const double far = std::abs(local_coefficient(stages, k, farther_out));
     if (near < negligible || far < negligible) continue;
     const auto power = static_cast<int>(std::lround(std::log10(near / far)));
-    const double size = factor * std::abs(local_coefficient(*stages, k, step * lambda));
+    const double size = factor * std::abs(local_coefficient(stages, k, step * lambda));
     if (size <= largest) {
       second = std::max(second, size);
       continue;
@@ -199,6 +181,26 @@ StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lamb
   result.order = result.power_of_step - result.power_of_product - (result.accumulates ? 1 : 0);
   result.valid = true;
   return result;
+}
+
+}  // namespace
+
+std::string StiffOrder::formula() const {
+  // (hλ)^{−m} h^k, with one power less where errors add up.
+  const int of_step = order;
+  const std::string step = of_step == 0 ? "1" : of_step == 1 ? "h" : fmt::format("h^{}", of_step);
+  if (power_of_product == 0) return step;
+  return power_of_product == 1 ? step + "/lambda" : fmt::format("{}/lambda^{}", step, power_of_product);
+}
+
+StiffOrder stiff_order(const schemes::SchemeData& data, double step, double lambda) {
+  const schemes::LinearForm form = schemes::linear_form(data);
+  if (const auto* formula = std::get_if<schemes::MultistepFormula>(&form)) return stiff_order(*formula);
+  const std::optional<StageData> stages = stage_data(data);
+  if (stages) return stiff_order(*stages, std::get<schemes::StabilityFunction>(form), step, lambda);
+  StiffOrder unknown;
+  unknown.reason = "no coefficients of a Runge-Kutta, Rosenbrock or multistep scheme";
+  return unknown;
 }
 
 }  // namespace fw::analysis

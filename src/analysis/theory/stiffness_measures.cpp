@@ -1,9 +1,9 @@
 #include "analysis/theory/stiffness_measures.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
+#include "dense/eigenvalues.hpp"
 #include "linalg/extreme_eigenvalues.hpp"
 
 namespace fw::analysis {
@@ -21,7 +21,7 @@ double spectral_radius(const OdeSystem& system, double t, ConstVectorRef y) {
 StiffnessMeasures stiffness_measures(const OdeSystem& system, double t, ConstVectorRef y) {
   SparseMatrix J = system.jacobian_pattern();
   system.jacobian(t, y, J);
-  const Eigen::VectorXcd eigenvalues = Matrix(J).eigenvalues();
+  const Eigen::VectorXcd eigenvalues = dense::eigenvalues(Matrix(J));
   StiffnessMeasures measures;
   for (const Complex& value : eigenvalues) {
     measures.largest_eigenvalue = std::max(measures.largest_eigenvalue, std::abs(value));

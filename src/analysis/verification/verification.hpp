@@ -3,16 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "core/verdict.hpp"
 #include "ode/integrator.hpp"
 #include "schemes/derived_properties.hpp"
 
 namespace fw::analysis {
-
-enum class Finding {
-  holds,
-  fails,
-  not_applicable,  ///< nothing is claimed, or the property has no meaning for this scheme
-};
 
 /// One property of one scheme: what is claimed (MethodInfo), what follows from the coefficients, what the
 /// running code shows.
@@ -21,7 +16,7 @@ struct PropertyCheck {
   std::string claimed{};
   std::string derived{};
   std::string measured{};
-  Finding finding = Finding::not_applicable;
+  Verdict verdict = Verdict::not_applicable;
   std::string reason{};  ///< what was measured on what, and why it fails
 };
 
@@ -33,11 +28,24 @@ struct SchemeUnderTest {
   const Integrator* oracle = nullptr;
 };
 
-/// Checks every property, in the order of the list below. The functions are pure: the same scheme gives the
-/// same findings.
+/// A part of the verification: it appends what it finds. The functions are pure: the same scheme gives the
+/// same verdicts.
+struct VerificationPart {
+  std::string name;
+  void (*check)(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+};
+
+/// Every part, in the order in which properties are reported. The only place where one is registered.
+const std::vector<VerificationPart>& verification_parts();
+
+/// Appends what a part finds. A scheme that throws where it should return a Status fails a
+/// property with the name of the part; other parts can go on.
+void run_part(const VerificationPart& part, const SchemeUnderTest& scheme,
+              std::vector<PropertyCheck>& checks);
+
+/// Checks every property.
 std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme);
 
-/// The single parts of `verify`; each appends its findings.
 /// Order for f(t, q), for f(t, q, v) and for ẏ = f(t, y), observed on nonlinear non-autonomous problems with
 /// masses other than 1, positions and velocities apart; in binary128 for orders that double cannot show.
 /// Where there is a run in binary128, that it is the same scheme as the one in double.

@@ -127,9 +127,9 @@ void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCh
   if (derived.embedded_order)
     check.derived = fmt::format("h^{}", std::min(*derived.order, *derived.embedded_order) + 1);
   check.measured = slope ? fmt::format("{:.2f}", *slope) : "no asymptotic range";
-  check.finding =
-      slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Finding::holds : Finding::fails;
-  if (derived.embedded_order && check.derived != check.claimed) check.finding = Finding::fails;
+  check.verdict =
+      slope && std::abs(*slope - expected) <= 0.1 + 0.03 * expected ? Verdict::holds : Verdict::fails;
+  if (derived.embedded_order && check.derived != check.claimed) check.verdict = Verdict::fails;
   checks.push_back(check);
 }
 
@@ -168,7 +168,7 @@ void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyChec
   check.claimed = own ? "own polynomial" : "cubic Hermite";
   check.derived = std::to_string(expected);
   check.measured = slope ? fmt::format("{:.2f}", *slope - 1.0) : "no asymptotic range";
-  check.finding = slope && std::abs(*slope - 1.0 - expected) <= 0.25 ? Finding::holds : Finding::fails;
+  check.verdict = slope && std::abs(*slope - 1.0 - expected) <= 0.25 ? Verdict::holds : Verdict::fails;
   checks.push_back(check);
 }
 
@@ -183,7 +183,7 @@ void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector
   const double expected =
       static_cast<double>(info.order) / static_cast<double>(std::min(info.order, info.embedded_order) + 1);
   PropertyCheck check{
-      .property = property, .claimed = fmt::format("tol^{:.2f}", expected), .finding = Finding::holds};
+      .property = property, .claimed = fmt::format("tol^{:.2f}", expected), .verdict = Verdict::holds};
   // Long enough for many steps of a high order at a loose tolerance, short enough for a low order at a tight
   // one.
   const double length = info.order >= 5 ? 12.0 : 3.0;
@@ -212,7 +212,7 @@ void verify_tolerance_proportionality(const SchemeUnderTest& scheme, std::vector
     const double slope = logarithmic_slope(tolerances, errors);
     check.measured += fmt::format("{}{:.2f} (C {:.1f})", check.measured.empty() ? "" : ", ", slope, worst);
     if (!status.ok() || !(std::abs(slope - expected) <= 0.3 * expected) || !(worst <= 1000.0)) {
-      check.finding = Finding::fails;
+      check.verdict = Verdict::fails;
       if (!status.ok()) check.reason = status.describe();
     }
   }
@@ -250,29 +250,10 @@ void verify_agreement(const SchemeUnderTest& scheme, std::vector<PropertyCheck>&
   check.claimed = fmt::format("within {:.1e}", allowed);
   check.measured = fmt::format("{:.1e}", difference);
   const bool ran = oracle.status.ok() && coarse.status.ok() && fine.status.ok();
-  check.finding = ran && difference <= allowed ? Finding::holds : Finding::fails;
+  check.verdict = ran && difference <= allowed ? Verdict::holds : Verdict::fails;
   if (!ran)
     check.reason = (!oracle.status.ok() ? oracle : !coarse.status.ok() ? coarse : fine).status.describe();
   checks.push_back(check);
-}
-
-std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme) {
-  std::vector<PropertyCheck> checks;
-  verify_order(scheme, checks);
-  verify_error_estimate(scheme, checks);
-  verify_dense_output(scheme, checks);
-  verify_step_control(scheme, checks);
-  verify_tolerance_proportionality(scheme, checks);
-  verify_polynomial_exactness(scheme, checks);
-  verify_tableau(scheme, checks);
-  verify_evaluation_count(scheme, checks);
-  verify_stability_function(scheme, checks);
-  verify_stability_limits(scheme, checks);
-  verify_symplecticity(scheme, checks);
-  verify_reversibility(scheme, checks);
-  verify_conservation(scheme, checks);
-  verify_agreement(scheme, checks);
-  return checks;
 }
 
 }  // namespace fw::analysis

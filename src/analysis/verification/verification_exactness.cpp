@@ -32,7 +32,7 @@ Solution one_step(const Integrator& integrator, const Ivp& ivp) {
 }
 
 bool runs_first_order_systems(const MethodInfo& info) {
-  return !info.needs_second_order && info.has_fixed_step && info.order > 0;
+  return !info.needs.has(Capability::second_order) && info.has_fixed_step && info.order > 0;
 }
 
 /// A system that hands out unit slopes: the j-th call of its right-hand side returns e_j and keeps the
@@ -54,7 +54,6 @@ class ProbingSystem final : public OdeSystem {
   SparseMatrix jacobian_pattern() const override { return SparseMatrix(size_, size_); }
   void jacobian(double, ConstVectorRef, SparseMatrix&) const override { refuse(); }
   void jacobian_product(double, ConstVectorRef, ConstVectorRef, VectorRef) const override { refuse(); }
-  const SecondOrderSystem* second_order() const override { return nullptr; }
 
   mutable std::vector<double> times{};
   mutable std::vector<Vector> arguments{};
@@ -166,14 +165,14 @@ void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<Prop
   while (exact <= largest_degree && error(exact) <= rounding) ++exact;
   check.measured = std::to_string(exact);
   check.claimed = fmt::format(">= {}", info.order);
-  check.finding = solution.status.ok() && exact >= info.order ? Finding::holds : Finding::fails;
+  check.verdict = solution.status.ok() && exact >= info.order ? Verdict::holds : Verdict::fails;
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (derived.quadrature_order) {
     check.derived = std::to_string(*derived.quadrature_order);
-    if (*derived.quadrature_order != exact) check.finding = Finding::fails;
+    if (*derived.quadrature_order != exact) check.verdict = Verdict::fails;
   }
-  if (exact <= largest_degree && error(exact) < missed) check.finding = Finding::fails;
-  if (check.finding == Finding::fails) {
+  if (exact <= largest_degree && error(exact) < missed) check.verdict = Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = fmt::format("polynomials of degree < {} are integrated exactly in one step{}", exact,
                                solution.status.ok() ? "" : "; " + solution.status.describe());
   }
@@ -183,7 +182,7 @@ void verify_polynomial_exactness(const SchemeUnderTest& scheme, std::vector<Prop
 void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   const MethodInfo& info = scheme.integrator.info();
   PropertyCheck check{.property = "evaluations per step"};
-  if (!info.is_explicit || !info.has_fixed_step || info.needs_springs) {
+  if (!info.is_explicit || !info.has_fixed_step || info.needs.has(Capability::springs)) {
     check.reason = "exact for explicit schemes only";
     checks.push_back(check);
     return;
@@ -204,7 +203,7 @@ void verify_evaluation_count(const SchemeUnderTest& scheme, std::vector<Property
   const std::int64_t more = count(48) - count(16);
   check.claimed = std::to_string(info.stages);
   check.measured = fmt::format("{:g}", static_cast<double>(more) / 32.0);
-  check.finding = more == 32 * info.stages ? Finding::holds : Finding::fails;
+  check.verdict = more == 32 * info.stages ? Verdict::holds : Verdict::fails;
   checks.push_back(check);
 }
 
@@ -231,8 +230,8 @@ void verify_tableau(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
   const double allowed = (is_explicit ? 1e-14 : 1e-10) * largest;
   check.claimed = "as listed";
   check.measured = fmt::format("differs by {:.1e}", difference);
-  check.finding = difference <= allowed ? Finding::holds : Finding::fails;
-  if (check.finding == Finding::fails) check.reason = "the code does not do what the tableau says";
+  check.verdict = difference <= allowed ? Verdict::holds : Verdict::fails;
+  if (check.verdict == Verdict::fails) check.reason = "the code does not do what the tableau says";
   checks.push_back(check);
 }
 

@@ -140,8 +140,8 @@ void check_momentum(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& c
   const double allowed = std::max(2e-13, 10.0 * scheme.integrator.info().iteration_tolerance);
   check.claimed = "conserved";
   check.measured = fmt::format("{:.1e}", change / scale);
-  check.finding = solution.status.ok() && change <= allowed * scale ? Finding::holds : Finding::fails;
-  if (check.finding == Finding::fails) {
+  check.verdict = solution.status.ok() && change <= allowed * scale ? Verdict::holds : Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = solution.status.ok() ? fmt::format("changes by more than {:.0e} in 64 steps", allowed)
                                         : solution.status.describe();
   }
@@ -173,7 +173,7 @@ void check_fixed_particles(const SchemeUnderTest& scheme, std::vector<PropertyCh
   }
   check.claimed = "at rest";
   check.measured = fmt::format("moved by {:.1e}", moved);
-  check.finding = solution.status.ok() && moved == 0.0 ? Finding::holds : Finding::fails;
+  check.verdict = solution.status.ok() && moved == 0.0 ? Verdict::holds : Verdict::fails;
   if (!solution.status.ok()) check.reason = solution.status.describe();
   checks.push_back(check);
 }
@@ -197,10 +197,10 @@ void check_energy(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& che
   if (info.conserves_energy) {
     check.claimed = "conserved";
     check.measured = fmt::format("{:.1e}", observer.largest() / scale);
-    check.finding =
+    check.verdict =
         solution.status.ok() && observer.largest() <= std::max(1e-10, 10.0 * info.iteration_tolerance) * scale
-            ? Finding::holds
-            : Finding::fails;
+            ? Verdict::holds
+            : Verdict::fails;
   } else {
     check.claimed = "no drift";
     // Rounding walks at random: 1e-14 of the energy per √step.
@@ -208,9 +208,9 @@ void check_energy(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& che
     const double ratio = std::abs(observer.drift()) / (observer.largest() + rounding);
     check.measured =
         fmt::format("drift {:.0f} % of amplitude {:.1e}", 100.0 * ratio, observer.largest() / scale);
-    check.finding = solution.status.ok() && ratio <= 0.25 ? Finding::holds : Finding::fails;
+    check.verdict = solution.status.ok() && ratio <= 0.25 ? Verdict::holds : Verdict::fails;
   }
-  if (check.finding == Finding::fails)
+  if (check.verdict == Verdict::fails)
     check.reason = fmt::format("over {} steps; {}", count, solution.status.describe());
   checks.push_back(check);
 }
@@ -246,9 +246,9 @@ void verify_symplecticity(const SchemeUnderTest& scheme, std::vector<PropertyChe
   check.measured = fmt::format("defect {:.1e}", largest);
   const bool measured = largest <= symplectic_below;
   const bool clear = measured || largest >= not_symplectic_above;
-  check.finding = clear && measured == info.is_symplectic ? Finding::holds : Finding::fails;
-  if (derived.symplectic && *derived.symplectic != info.is_symplectic) check.finding = Finding::fails;
-  if (check.finding == Finding::fails) {
+  check.verdict = clear && measured == info.is_symplectic ? Verdict::holds : Verdict::fails;
+  if (derived.symplectic && *derived.symplectic != info.is_symplectic) check.verdict = Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = fmt::format("symplectic is below {:.0e}, not symplectic above {:.0e}{}", symplectic_below,
                                not_symplectic_above, status.ok() ? "" : "; " + status.describe());
   }
@@ -289,11 +289,11 @@ void verify_reversibility(const SchemeUnderTest& scheme, std::vector<PropertyChe
   const bool measured = ulps <= reversible_below;
   check.measured = fmt::format("{:.1e} ULP", ulps);
   const bool ran = forward.status.ok() && backward.status.ok();
-  check.finding = ran && (measured || ulps >= not_reversible_above) && measured == info.is_symmetric
-                      ? Finding::holds
-                      : Finding::fails;
-  if (derived.symmetric && *derived.symmetric != info.is_symmetric) check.finding = Finding::fails;
-  if (check.finding == Finding::fails) {
+  check.verdict = ran && (measured || ulps >= not_reversible_above) && measured == info.is_symmetric
+                      ? Verdict::holds
+                      : Verdict::fails;
+  if (derived.symmetric && *derived.symmetric != info.is_symmetric) check.verdict = Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = ran ? fmt::format("reversible is below {:.0e} ULP, not reversible above {:.0e}",
                                      reversible_below, not_reversible_above)
                        : (forward.status.ok() ? backward : forward).status.describe();

@@ -148,9 +148,9 @@ PropertyCheck judge(const char* property, int claimed, const std::optional<int>&
                     const OrderMeasurement& measurement) {
   PropertyCheck check{.property = property, .claimed = std::to_string(claimed)};
   if (derived) check.derived = std::to_string(*derived);
-  check.finding = Finding::holds;
+  check.verdict = Verdict::holds;
   const auto fail = [&](const std::string& why) {
-    check.finding = Finding::fails;
+    check.verdict = Verdict::fails;
     check.reason += (check.reason.empty() ? "" : "; ") + why;
   };
   const auto judge_fit = [&](const char* name, const OrderFit& fit) {
@@ -212,9 +212,9 @@ void check_extended_twin(const SchemeUnderTest& scheme, std::vector<PropertyChec
   constexpr double rounding = 1e-12;
   check.claimed = "the same scheme";
   check.measured = fmt::format("differ by {:.1e}", largest);
-  check.finding = check.reason.empty() && largest <= std::max(rounding, 10.0 * info.iteration_tolerance)
-                      ? Finding::holds
-                      : Finding::fails;
+  check.verdict = check.reason.empty() && largest <= std::max(rounding, 10.0 * info.iteration_tolerance)
+                      ? Verdict::holds
+                      : Verdict::fails;
   checks.push_back(check);
 }
 

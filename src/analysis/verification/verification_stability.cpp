@@ -8,7 +8,9 @@
 #include <optional>
 
 #include "analysis/verification/verification.hpp"
+#include "dense/factorisations.hpp"
 #include "ode/functor_system.hpp"
+#include "schemes/linear_form.hpp"
 #include "schemes/property_list.hpp"
 
 namespace fw::analysis {
@@ -88,7 +90,7 @@ double compare_runge_kutta(const Integrator& integrator, const schemes::Stabilit
         std::max(largest, (expected - found).cwiseAbs().maxCoeff() / (1.0 + expected.cwiseAbs().maxCoeff()));
   };
   const MethodInfo& info = integrator.info();
-  if (!info.needs_second_order) {
+  if (!info.needs.has(Capability::second_order)) {
     const LinearFlow flows[] = {
         {-0.3, 0.2, -0.2, -0.3}, {-1.1, 0.7, -0.7, -1.1}, {0.4, -0.9, 0.9, 0.4}, {-2.5, 0.6, 0.0, -0.4}};
     for (const LinearFlow& flow : flows) {
@@ -131,7 +133,7 @@ double compare_nystrom(const Integrator& integrator, const schemes::NystromValue
     if (!why_not_applicable(integrator.info(), *system).empty()) continue;
     // k = −ω²(q e + v c + Ā k) − 2δ(v e + A k).
     const Vector ones = Vector::Ones(s);
-    const Eigen::PartialPivLU<Matrix> lu(
+    const dense::Lu lu(
         Matrix(Matrix::Identity(s, s) + omega_squared * a_position + 2.0 * delta * a_velocity));
     const Vector by_position = lu.solve(Vector(-omega_squared * ones));
     const Vector by_velocity = lu.solve(Vector(-omega_squared * c - 2.0 * delta * ones));
@@ -175,8 +177,8 @@ PropertyCheck agreement(const char* property, double difference, double allowed,
   PropertyCheck check{.property = property};
   check.claimed = "as the coefficients say";
   check.measured = fmt::format("differs by {:.1e}", difference);
-  check.finding = status.ok() && difference <= allowed ? Finding::holds : Finding::fails;
-  if (check.finding == Finding::fails) {
+  check.verdict = status.ok() && difference <= allowed ? Verdict::holds : Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = status.ok() ? fmt::format("expected at most {:.1e}", allowed) : status.describe();
   }
   return check;
@@ -207,7 +209,7 @@ constexpr double farthest = 500.0;
 template <class Growth, class Norm>
 void check_limit(const char* property, double limit, Growth growth, Norm norm,
                  std::vector<PropertyCheck>& checks) {
-  PropertyCheck check{.property = property, .finding = Finding::holds};
+  PropertyCheck check{.property = property, .verdict = Verdict::holds};
   check.derived = std::isinf(limit) ? "infinite" : fmt::format("{:.5g}", limit);
   constexpr int many_steps = 4000;
   constexpr double bounded_below = 1e3;
@@ -216,7 +218,7 @@ void check_limit(const char* property, double limit, Growth growth, Norm norm,
     const double size = norm(inside, many_steps);
     check.measured = fmt::format("bounded at {:.5g}", inside);
     if (!(size < bounded_below)) {
-      check.finding = Finding::fails;
+      check.verdict = Verdict::fails;
       check.measured = fmt::format("grows to {:.1e} at {:.5g}", size, inside);
     }
   }
@@ -244,21 +246,13 @@ void check_limit(const char* property, double limit, Growth growth, Norm norm,
       check.measured += fmt::format("{}grows at {:.5g}", check.measured.empty() ? "" : ", ", outside);
       // The start need not lie on the growing mode: its share costs some powers of ten, no more.
       if (!(size >= bounded_below) || !(rate <= 1.1 * predicted + 1e-3)) {
-        check.finding = Finding::fails;
+        check.verdict = Verdict::fails;
         check.reason = fmt::format("at {:.5g}: size {:.1e} after {} steps, predicted factor {:.8f} per step",
                                    outside, size, count, strongest);
       }
     }
   }
   checks.push_back(check);
-}
-
-std::optional<schemes::NystromValues<Float128>> nystrom_values(const schemes::SchemeData& data) {
-  if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&data))
-    return schemes::values<Float128>(*nystrom);
-  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&data))
-    return schemes::as_nystrom(*splitting);
-  return std::nullopt;
 }
 
 }  // namespace
@@ -271,19 +265,15 @@ void verify_stability_function(const SchemeUnderTest& scheme, std::vector<Proper
   }
   Status status;
   constexpr double allowed = 2e-11;
-  if (std::holds_alternative<schemes::ButcherTableau>(scheme.data) ||
-      std::holds_alternative<schemes::RosenbrockTableau>(scheme.data)) {
-    const schemes::DerivedProperties derived = schemes::derive(scheme.data);
-    const double difference = compare_runge_kutta(scheme.integrator, *derived.stability_function, status);
+  const schemes::LinearForm form = schemes::linear_form(scheme.data);
+  if (const auto* R = std::get_if<schemes::StabilityFunction>(&form)) {
+    const double difference = compare_runge_kutta(scheme.integrator, *R, status);
     checks.push_back(agreement(property, difference, allowed, status));
-    checks.back().derived = schemes::to_text(*derived.stability_function);
-  } else if (const auto* nystrom = std::get_if<schemes::NystromTableau>(&scheme.data)) {
-    const double difference = compare_nystrom(scheme.integrator, schemes::values<Float128>(*nystrom), status);
+    checks.back().derived = schemes::to_text(*R);
+  } else if (const auto* nystrom = std::get_if<schemes::NystromValues<Float128>>(&form)) {
+    const double difference = compare_nystrom(scheme.integrator, *nystrom, status);
     checks.push_back(agreement("oscillator matrix", difference, allowed, status));
-  } else if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&scheme.data)) {
-    const double difference = compare_nystrom(scheme.integrator, schemes::as_nystrom(*splitting), status);
-    checks.push_back(agreement("oscillator matrix", difference, allowed, status));
-  } else if (const auto* multistep = std::get_if<schemes::MultistepFormula>(&scheme.data)) {
+  } else if (const auto* multistep = std::get_if<schemes::MultistepFormula>(&form)) {
     const double difference = compare_multistep(scheme.integrator, *multistep, status);
     checks.push_back(agreement("recurrence of the formula", difference, allowed, status));
   } else {
@@ -295,7 +285,7 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
   const MethodInfo& info = scheme.integrator.info();
   const schemes::DerivedProperties derived = schemes::derive(scheme.data);
   if (!info.has_fixed_step) return;
-  if (derived.stability && !info.needs_second_order) {
+  if (derived.stability && !info.needs.has(Capability::second_order)) {
     const schemes::StabilityFunction& R = *derived.stability_function;
     check_limit(
         "real stability interval", derived.stability->real_interval,
@@ -310,7 +300,8 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
         },
         [&](double x, int steps) { return norm_after(scheme.integrator, 0.0, x, steps); }, checks);
   }
-  if (const auto nystrom = nystrom_values(scheme.data)) {
+  const schemes::LinearForm form = schemes::linear_form(scheme.data);
+  if (const auto* nystrom = std::get_if<schemes::NystromValues<Float128>>(&form)) {
     check_limit(
         "stability interval, oscillator", derived.oscillator->interval,
         [&](double x) { return schemes::oscillator_growth(*nystrom, x); },
@@ -332,15 +323,15 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
     const double real = -r * std::cos(angle), imaginary = r * std::sin(angle);
     // λ and its conjugate: as a first-order system, or the oscillator with ω² = r², δ = −Re λ.
     const std::shared_ptr<const OdeSystem> system =
-        info.needs_second_order
+        info.needs.has(Capability::second_order)
             ? linear_oscillator(r * r, degrees > 89.9 ? 0.0 : -real)
             : std::make_shared<FunctorSystem<LinearFlow>>(2, LinearFlow{real, imaginary, -imaginary, real});
     if (!why_not_applicable(info, *system).empty()) return;
     ran = true;
     if (info.carries_more_than_state || info.is_multistep) {
-      Eigen::Vector2d y{1.0, info.needs_second_order ? 0.5 * r : 0.0};
+      Eigen::Vector2d y{1.0, info.needs.has(Capability::second_order) ? 0.5 * r : 0.0};
       const Status status = steps_of(scheme.integrator, system, 400, y);
-      const double size = info.needs_second_order ? std::hypot(y[0], y[1] / r) : y.norm();
+      const double size = info.needs.has(Capability::second_order) ? std::hypot(y[0], y[1] / r) : y.norm();
       bounded = bounded && status.ok() && size <= 10.0;
       if (r > 1e5) decay = std::max(decay, size);
       return;
@@ -348,14 +339,15 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
     Status status;
     const Eigen::Matrix2d m = step_matrix(scheme.integrator, system, status);
     const double radius = Eigen::EigenSolver<Eigen::Matrix2d>(m, false).eigenvalues().cwiseAbs().maxCoeff();
-    bounded = bounded && status.ok() && radius <= 1.0 + (info.needs_second_order ? 1e-6 : 1e-9);
+    bounded =
+        bounded && status.ok() && radius <= 1.0 + (info.needs.has(Capability::second_order) ? 1e-6 : 1e-9);
     if (r > 1e5 && degrees < 90.0) decay = std::max(decay, radius);  // e^z itself does not decay on the axis
   };
   for (const double r : {0.1, 0.5, 1.0, 2.0, 4.0, 10.0, 100.0, 1e6}) {
     for (const double degrees : {0.0, 30.0, 60.0, 80.0, 89.5, 90.0}) apply(r, degrees);
   }
   if (!ran) {
-    check.finding = Finding::not_applicable;
+    check.verdict = Verdict::not_applicable;
     check.reason = "the scheme does not run on the linear test equations";
     checks.push_back(check);
     return;
@@ -363,8 +355,8 @@ void verify_stability_limits(const SchemeUnderTest& scheme, std::vector<Property
   const bool vanishes = decay <= 1e-2;
   check.measured =
       bounded ? (vanishes ? fmt::format("bounded, |R| = {:.1e} far out", decay) : "bounded") : "grows";
-  check.finding =
-      bounded && (!info.is_l_stable || vanishes) && check.derived != "no" ? Finding::holds : Finding::fails;
+  check.verdict =
+      bounded && (!info.is_l_stable || vanishes) && check.derived != "no" ? Verdict::holds : Verdict::fails;
   checks.push_back(check);
 }
 

@@ -43,7 +43,7 @@ void check_shorter_last_step(const SchemeUnderTest& scheme, ProblemFunction prob
       refused = true;
     }
     check.measured = refused ? "refused" : "taken";
-    check.finding = refused ? Finding::holds : Finding::fails;
+    check.verdict = refused ? Verdict::holds : Verdict::fails;
     if (!refused) check.reason = "a multistep scheme with constant steps cannot make a shorter one";
     checks.push_back(check);
     return;
@@ -56,9 +56,9 @@ void check_shorter_last_step(const SchemeUnderTest& scheme, ProblemFunction prob
   check.claimed = "taken";
   check.measured = fmt::format("error {:.1e}, whole steps {:.1e}", error, whole);
   const bool ran = broken.status.ok() && longer.status.ok() && shorter.status.ok();
-  check.finding =
-      ran && broken.time == ivp.t1 && error <= factor * whole + rounding ? Finding::holds : Finding::fails;
-  if (check.finding == Finding::fails) {
+  check.verdict =
+      ran && broken.time == ivp.t1 && error <= factor * whole + rounding ? Verdict::holds : Verdict::fails;
+  if (check.verdict == Verdict::fails) {
     check.reason = ran ? fmt::format("ends at t = {:.17g} of {:.17g}", broken.time, ivp.t1)
                        : (!broken.status.ok()   ? broken
                           : !longer.status.ok() ? longer
@@ -85,9 +85,9 @@ void check_attempted_steps(const SchemeUnderTest& scheme, const integrators::Ada
   checks.push_back({.property = "attempted steps",
                     .claimed = "as constant ones",
                     .measured = fmt::format("differ by {:.1e}", difference),
-                    .finding = ran && difference <= allowed_difference(scheme.integrator.info())
-                                   ? Finding::holds
-                                   : Finding::fails});
+                    .verdict = ran && difference <= allowed_difference(scheme.integrator.info())
+                                   ? Verdict::holds
+                                   : Verdict::fails});
 }
 
 /// A first step as long as the interval has to be rejected and must leave no trace: neither in the next
@@ -95,7 +95,7 @@ void check_attempted_steps(const SchemeUnderTest& scheme, const integrators::Ada
 void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::AdaptiveIntegrator* adaptive,
                           ProblemFunction problem, std::vector<PropertyCheck>& checks) {
   const Ivp& ivp = problem();
-  PropertyCheck check{.property = "rejected steps", .claimed = "leave no trace", .finding = Finding::holds};
+  PropertyCheck check{.property = "rejected steps", .claimed = "leave no trace", .verdict = Verdict::holds};
   if (adaptive != nullptr) {
     const double h = (ivp.t1 - ivp.t0) / 8.0;
     Work work;
@@ -107,7 +107,7 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
     const double difference = relative_difference(again, fresh);
     check.measured = fmt::format("differ by {:.1e}, ", difference);
     if (!ran || !(difference <= allowed_difference(scheme.integrator.info()))) {
-      check.finding = Finding::fails;
+      check.verdict = Verdict::fails;
       check.reason = "an attempt after a rejected one is another step";
     }
   }
@@ -128,7 +128,7 @@ void check_rejected_steps(const SchemeUnderTest& scheme, const integrators::Adap
                                 solution.work.rejected_steps, error / tolerance, usual / tolerance);
   if (!solution.status.ok() || !chosen.status.ok() || solution.work.rejected_steps == 0 ||
       !(error <= factor * std::max(usual, tolerance))) {
-    check.finding = Finding::fails;
+    check.verdict = Verdict::fails;
     check.reason += fmt::format("{}from a first step as long as the interval: {}",
                                 check.reason.empty() ? "" : "; ", solution.status.describe());
   }

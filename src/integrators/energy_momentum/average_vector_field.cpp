@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "core/error.hpp"
+#include "integrators/energy_momentum/implicit_velocity.hpp"
 #include "integrators/implicit/step_matrix.hpp"
-#include "integrators/loop/stepper.hpp"
-#include "linalg/newton.hpp"
 
 namespace fw::integrators {
 
@@ -42,68 +40,52 @@ Quadrature gauss_legendre(int m) {
   return rule;
 }
 
-class AverageVectorFieldStepper final : public Stepper, private linalg::NewtonProblem {
+class AverageVectorFieldStepper final : public ImplicitVelocityStepper {
  public:
-  AverageVectorFieldStepper(const Quadrature& rule, const Ivp& ivp, Work& work)
-      : rule_(rule),
-        system_(*ivp.system->second_order()),
+  AverageVectorFieldStepper(const Quadrature& rule, const SecondOrderSystem& system, Work& work)
+      : ImplicitVelocityStepper(system, work),
+        rule_(rule),
+        system_(system),
         work_(work),
-        newton_(system_.degrees_of_freedom(), linalg::LinearSolverKind::sparse_lu),
-        matrix_(system_),
-        sum_(system_.tangent_pattern()),
-        start_position_(system_.degrees_of_freedom()),
-        start_velocity_(system_.degrees_of_freedom()),
-        position_(system_.degrees_of_freedom()),
-        velocity_(system_.degrees_of_freedom()),
-        force_(system_.degrees_of_freedom()),
-        impulse_(system_.degrees_of_freedom()) {}
-
-  Status step(double t, double h, VectorRef y) override {
-    const Index n = force_.size();
-    time_ = t;
-    step_ = h;
-    start_position_ = y.head(n);
-    start_velocity_ = y.tail(n);
-    auto v = y.tail(n);
-    const double scale =
-        std::max(v.lpNorm<Eigen::Infinity>(), 1e-4 * start_position_.lpNorm<Eigen::Infinity>() / h);
-    if (Status status = newton_.solve(*this, v, scale, work_); !status.ok()) return status;
-    y.head(n) = start_position_ + (0.5 * h) * (start_velocity_ + v);
-    return {};
-  }
+        matrix_(system),
+        sum_(system.tangent_pattern()),
+        position_(system.degrees_of_freedom()),
+        velocity_(system.degrees_of_freedom()),
+        force_(system.degrees_of_freedom()) {}
 
  private:
   /// The state at c on the segment from the start to the end with velocity v.
   void move_to(double c, ConstVectorRef v) {
-    position_ = start_position_ + (0.5 * c * step_) * (start_velocity_ + v);
-    velocity_ = start_velocity_ + c * (v - start_velocity_);
+    position_ = start_position() + (0.5 * c * length()) * (start_velocity() + v);
+    velocity_ = start_velocity() + c * (v - start_velocity());
   }
 
-  void residual(ConstVectorRef v, VectorRef out) override {
-    impulse_.setZero();
+  void impulse(ConstVectorRef v, VectorRef out) override {
+    out.setZero();
     for (std::size_t i = 0; i < rule_.node.size(); ++i) {
       move_to(rule_.node[i], v);
-      system_.force(time_ + rule_.node[i] * step_, position_, velocity_, force_);
+      system_.force(time() + rule_.node[i] * length(), position_, velocity_, force_);
       ++work_.rhs_evaluations;
-      impulse_ += (rule_.weight[i] * step_) * force_;
+      out += (rule_.weight[i] * length()) * force_;
     }
-    out = system_.mass().cwiseProduct(v - start_velocity_) - impulse_;
   }
 
   const SparseMatrix& matrix(ConstVectorRef v) override {
-    sum_.coeffs().setZero();
+    const double h = length();
     for (std::size_t i = 0; i < rule_.node.size(); ++i) {
       const double c = rule_.node[i];
       const double weight = rule_.weight[i];
       move_to(c, v);
       ++work_.jacobian_evaluations;
-      sum_.coeffs() += matrix_
-                           .assemble(time_ + c * step_, position_, velocity_,
-                                     {.mass = weight,
-                                      .damping = -weight * c * step_,
-                                      .stiffness = -0.5 * weight * c * step_ * step_},
-                                     TangentModel::exact)
-                           .coeffs();
+      const SparseMatrix& part = matrix_.assemble(
+          time() + c * h, position_, velocity_,
+          {.mass = weight, .damping = -weight * c * h, .stiffness = -0.5 * weight * c * h * h},
+          TangentModel::exact);
+      if (i == 0) {
+        sum_ = part;  // takes the pattern as well
+      } else {
+        sum_.coeffs() += part.coeffs();
+      }
     }
     return sum_;
   }
@@ -111,11 +93,9 @@ class AverageVectorFieldStepper final : public Stepper, private linalg::NewtonPr
   const Quadrature rule_;
   const SecondOrderSystem& system_;
   Work& work_;
-  linalg::Newton newton_;
   StepMatrix matrix_;
   SparseMatrix sum_;
-  Vector start_position_, start_velocity_, position_, velocity_, force_, impulse_;
-  double time_ = 0.0, step_ = 0.0;
+  Vector position_, velocity_, force_;
 };
 
 }  // namespace
@@ -135,7 +115,7 @@ std::unique_ptr<Integrator> make_average_vector_field(const AverageVectorFieldOp
                   .is_symplectic = options.quadrature_points == 1,
                   .is_symmetric = true,
                   .is_a_stable = true,
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "q' = q + ½h (v + v');  M (v' - v) = h int_0^1 f(t + xi h, q + xi (q' - q), "
                       "v + xi (v' - v)) dxi",
@@ -143,7 +123,7 @@ std::unique_ptr<Integrator> make_average_vector_field(const AverageVectorFieldOp
   const Quadrature rule = gauss_legendre(options.quadrature_points);
   return std::make_unique<FixedStepIntegrator>(
       std::move(info), [rule](const Ivp& ivp, double, Work& work) -> std::unique_ptr<Stepper> {
-        return std::make_unique<AverageVectorFieldStepper>(rule, ivp, work);
+        return std::make_unique<AverageVectorFieldStepper>(rule, *ivp.system->second_order(), work);
       });
 }
 

@@ -50,6 +50,10 @@ class ExponentialRosenbrockEulerStepper final : public Stepper {
     return status;
   }
 
+  /// A step depends on (t, y) only.
+  void restart(double, ConstVectorRef) override {}
+  void serialise(StateArchive&) override {}
+
  private:
   ExponentialOptions options_;
   const OdeSystem& system_;

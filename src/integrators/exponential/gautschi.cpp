@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/error.hpp"
+#include "dense/eigenvalues.hpp"
 #include "integrators/loop/stepper.hpp"
 
 namespace fw::integrators {
@@ -63,8 +63,7 @@ class GautschiStepper final : public Stepper {
       : filter_(filter),
         system_(*ivp.system->second_order()),
         work_(work),
-        start_(ivp.y0.head(system_.degrees_of_freedom())),
-        position_(start_),
+        start_(system_.degrees_of_freedom()),
         velocity_(Vector::Zero(start_.size())),
         force_(start_.size()) {
     for (Index i = 0; i < start_.size(); ++i) {
@@ -77,11 +76,9 @@ class GautschiStepper final : public Stepper {
                       "freedom, expected at most {}",
                       n, largest_gautschi_size));
     }
-    decompose(ivp.t0);
     for (Vector* vector : {&z_, &dz_, &new_z_, &new_dz_, &filtered_, &rest_, &new_rest_, &physical_})
-      vector->resize(n);
-    coordinates(ivp.y0);
-    factors_step_ = 0.0;
+      *vector = Vector::Zero(n);
+    restart(ivp.t0, ivp.y0);
   }
 
   Status step(double t, double h, VectorRef y) override {
@@ -113,6 +110,27 @@ class GautschiStepper final : public Stepper {
     return {};
   }
 
+  /// The modes are those of the tangent stiffness at the state.
+  void restart(double t, ConstVectorRef y) override {
+    start_ = y.head(start_.size());
+    position_ = start_;
+    decompose(t);
+    coordinates(y);
+    factors_step_ = 0.0;
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("origin", start_);
+    archive.visit("eigenvectors", vectors_);
+    archive.visit("frequencies", frequency_);
+    archive.visit("coordinates", z_);
+    archive.visit("velocities", dz_);
+    archive.visit("rest of the force", rest_);
+    archive.visit("step of the factors", factors_step_);
+    if (!archive.is_loading()) return;
+    position_ = start_;
+    if (factors_step_ != 0.0) factors_ = make_factors(filter_, factors_step_, frequency_);
+  }
+
  private:
   void decompose(double t) {
     SparseMatrix stiffness = system_.tangent_pattern();
@@ -133,13 +151,13 @@ class GautschiStepper final : public Stepper {
       }
     }
     const Matrix symmetric = 0.5 * (A + A.transpose());
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(symmetric);
-    vectors_ = solver.eigenvectors();
-    frequency_ = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    dense::SymmetricEigen eigen = dense::symmetric_eigen(symmetric);
+    vectors_ = std::move(eigen.vectors);
+    frequency_ = eigen.values.cwiseMax(0.0).cwiseSqrt();
   }
 
   /// z and ż of the initial state.
-  void coordinates(const Vector& y0) {
+  void coordinates(ConstVectorRef y0) {
     const auto n = static_cast<Index>(moving_.size());
     for (Index i = 0; i < n; ++i) {
       physical_[i] = y0[start_.size() + moving_[static_cast<std::size_t>(i)]] / inverse_root_mass_[i];
@@ -190,8 +208,7 @@ std::unique_ptr<Integrator> make_gautschi(const GautschiOptions& options) {
                   .is_symplectic = options.filter != TrigonometricFilter::gautschi,
                   .is_symmetric = options.filter != TrigonometricFilter::gautschi,
                   .is_a_stable = true,
-                  .needs_second_order = true,
-                  .needs_position_forces = true,
+                  .needs = {Capability::second_order, Capability::position_forces},
                   .formula =
                       "x' = cos(hW) x + W^-1 sin(hW) v + ½h² Psi g;  v' = -W sin(hW) x + cos(hW) v + "
                       "½h (Psi0 g + Psi1 g');  g = f + W² x",

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unsupported/Eigen/MatrixFunctions>
+
+#include "dense/factorisations.hpp"
 
 namespace fw::integrators {
 
@@ -17,7 +18,7 @@ Matrix phi_columns(const Matrix& H) {
   extended.topLeftCorner(m, m) = H;
   extended(0, m) = 1.0;
   extended(m, m + 1) = 1.0;
-  const Matrix exponential = extended.exp();
+  const Matrix exponential = dense::exponential(extended);
   return exponential.topRightCorner(m, 2);
 }
 

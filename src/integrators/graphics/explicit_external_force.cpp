@@ -1,34 +1,51 @@
 #include "integrators/graphics/explicit_external_force.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
-#include "mechanics/mass_spring_force.hpp"
+#include "core/error.hpp"
 
 namespace fw::integrators {
 
-ExplicitExternalForce::ExplicitExternalForce(const mechanics::MassSpringModel& model, bool with_dampers)
-    : external_(model), elastic_(model), zero_(Vector::Zero(3 * static_cast<Index>(model.mass.size()))) {
-  std::ranges::fill(external_.springs.stiffness, 0.0);
-  external_.springs.law = mechanics::SpringLaw::hooke;
-  for (mechanics::Anchor& anchor : external_.anchors) anchor.stiffness = 0.0;
-  if (!with_dampers || std::ranges::none_of(model.springs.damping, [](double c) { return c > 0.0; })) {
-    external_.springs = {};
-  }
-  if (!with_dampers) external_.anchors.clear();
+using Part = mechanics::BatchChoice::Part;
 
-  std::ranges::fill(elastic_.springs.damping, 0.0);
-  for (mechanics::Anchor& anchor : elastic_.anchors) anchor.damping = 0.0;
-  elastic_.gravity = {};
-  elastic_.drag = 0.0;
-  elastic_.obstacles.clear();
+ExplicitExternalForce::ExplicitExternalForce(const mechanics::MassSpringSystem& system, Dampers dampers,
+                                             std::string_view method)
+    : system_(system),
+      dampers_(dampers),
+      method_(method),
+      revision_(system.element_revision()),
+      zero_(Vector::Zero(system.degrees_of_freedom())) {
+  choose();
 }
 
-void ExplicitExternalForce::evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force) const {
-  mechanics::mass_spring_force(external_, q.data(), v.data(), force.data());
+void ExplicitExternalForce::choose() {
+  const mechanics::ElementAssembly& elements = system_.elements();
+  revision_ = system_.element_revision();
+  external_.assign(elements.batch_count(), {});
+  elastic_.assign(elements.batch_count(), {});
+  for (std::size_t k = 0; k < elements.batch_count(); ++k) {
+    const mechanics::ElementLabels labels = elements.labels(k);
+    if (labels.role == mechanics::ElementRole::external) {
+      elastic_[k].part = Part::none;
+      continue;
+    }
+    if (labels.kind != "springs" && labels.kind != "anchors") {
+      throw InputError(fmt::format(
+          "method \"{}\": found {}, expected springs and anchors alone to be elastic", method_, labels.kind));
+    }
+    const bool has_dampers = elements.force_class(k) == ForceClass::velocity;
+    external_[k].part = has_dampers && dampers_ == Dampers::to_external ? Part::dampers : Part::none;
+  }
+}
+
+void ExplicitExternalForce::evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force) {
+  if (revision_ != system_.element_revision()) choose();
+  system_.elements().force(external_, q.data(), v.data(), force.data());
 }
 
 void ExplicitExternalForce::elastic(ConstVectorRef q, VectorRef force) {
-  mechanics::mass_spring_force(elastic_, q.data(), zero_.data(), force.data());
+  if (revision_ != system_.element_revision()) choose();
+  system_.elements().force(elastic_, q.data(), zero_.data(), force.data());
 }
 
 }  // namespace fw::integrators

@@ -1,27 +1,39 @@
 #pragma once
 
-#include "mechanics/mass_spring_model.hpp"
+#include <cstdint>
+#include <string_view>
 
 #include "core/types.hpp"
+#include "mechanics/mass_spring_system.hpp"
 
 namespace fw::integrators {
 
-/// The forces of a mass-spring model as graphics' position-based schemes divide them: the elasticity of
+/// The forces of a mass-spring system as graphics' position-based schemes divide them: the elasticity of
 /// springs and anchors, which they treat implicitly, and everything else, which they evaluate at the start of
 /// the step.
 class ExplicitExternalForce {
  public:
-  /// `with_dampers`: whether the dampers of springs and anchors belong to the external force (or to neither).
-  explicit ExplicitExternalForce(const mechanics::MassSpringModel& model, bool with_dampers = true);
+  /// Where the dampers of springs and anchors belong.
+  enum class Dampers { to_neither, to_external };
+
+  /// The system has to outlive this. Throws InputError that names `method` where other elements than springs
+  /// and anchors are elastic.
+  ExplicitExternalForce(const mechanics::MassSpringSystem& system, Dampers dampers, std::string_view method);
 
   /// Gravity, drag, obstacles and, unless left out, dampers at (q, v) [N]; zero on fixed particles.
-  void evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force) const;
+  void evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force);
 
-  /// Springs and anchors without their dampers at q [N]; zero on fixed particles.
+  /// Springs and anchors at rest at q [N]; zero on fixed particles.
   void elastic(ConstVectorRef q, VectorRef force);
 
  private:
-  mechanics::MassSpringModel external_, elastic_;
+  void choose();
+
+  const mechanics::MassSpringSystem& system_;
+  Dampers dampers_;
+  std::string_view method_;
+  std::uint64_t revision_;  ///< of the elements that the choices are for
+  mechanics::ElementChoice external_, elastic_;
   Vector zero_;
 };
 

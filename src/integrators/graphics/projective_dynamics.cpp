@@ -10,7 +10,7 @@
 #include "integrators/loop/mass_spring_access.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "linalg/linear_solver.hpp"
-#include "mechanics/mass_spring_force.hpp"
+#include "mechanics/elements/spring_force.hpp"
 
 namespace fw::integrators {
 
@@ -23,7 +23,7 @@ class ProjectiveDynamicsStepper final : public Stepper {
         system_(system),
         model_(system.model()),
         work_(work),
-        external_(model_),
+        external_(system, ExplicitExternalForce::Dampers::to_external, "projective_dynamics"),
         solver_(linalg::make_linear_solver({.kind = linalg::LinearSolverKind::sparse_cholesky})),
         row_(model_.mass.size(), -1),
         start_(system.degrees_of_freedom()),
@@ -37,7 +37,7 @@ class ProjectiveDynamicsStepper final : public Stepper {
   }
 
   Status step(double, double h, VectorRef y) override {
-    if (h != factorised_step_) {
+    if (h != factorised_step_ || system_.element_revision() != factorised_revision_) {
       if (Status status = factorise(h); !status.ok()) return status;
     }
     const Index n = force_.size();
@@ -55,10 +55,20 @@ class ProjectiveDynamicsStepper final : public Stepper {
     return {};
   }
 
+  void restart(double, ConstVectorRef) override {
+    factorised_step_ = 0.0;
+    solver_->forget();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("step of the matrix", factorised_step_);
+    solver_->serialise(archive);
+  }
+
  private:
   /// M + h²L over the moving particles, one row each: x, y and z have the same matrix.
   Status factorise(double h) {
     factorised_step_ = h;
+    factorised_revision_ = system_.element_revision();
     std::vector<Eigen::Triplet<double, int>> entries;
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (row_[i] >= 0) entries.emplace_back(row_[i], row_[i], model_.mass[i]);
@@ -85,7 +95,7 @@ class ProjectiveDynamicsStepper final : public Stepper {
   }
 
   double rate(std::size_t e) const {
-    return mechanics::with_spring_law(model_.springs.law, [&](auto law) {
+    return mechanics::with_spring_law(model_.springs.law_of(e), [&](auto law) {
       return mechanics::spring_rate<law()>(mechanics::spring_parameters(model_.springs, e));
     });
   }
@@ -121,6 +131,7 @@ class ProjectiveDynamicsStepper final : public Stepper {
   std::vector<int> row_;  ///< row of each particle in the matrix, −1 where it is fixed
   int unknowns_ = 0;
   double factorised_step_ = 0.0;
+  std::uint64_t factorised_revision_ = 0;  ///< of the elements
   Vector start_, inertial_, force_, right_hand_side_;
   std::array<Vector, 3> correction_;
 };
@@ -139,8 +150,7 @@ std::unique_ptr<Integrator> make_projective_dynamics(const ProjectiveDynamicsOpt
                   .order_with_velocity_forces = 1,
                   .stages = options.iterations,
                   .is_explicit = false,
-                  .needs_second_order = true,
-                  .needs_springs = true,
+                  .needs = {Capability::second_order, Capability::springs},
                   .formula =
                       "repeat: p = l0 d'/|d'|;  (M + h²L) q' = M (q + h v) + h² (J p + f_ext);  "
                       "v' = (q' - q)/h",

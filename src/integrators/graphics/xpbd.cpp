@@ -9,7 +9,7 @@
 #include "integrators/graphics/explicit_external_force.hpp"
 #include "integrators/loop/mass_spring_access.hpp"
 #include "integrators/loop/stepper.hpp"
-#include "mechanics/mass_spring_force.hpp"
+#include "mechanics/elements/spring_force.hpp"
 
 namespace fw::integrators {
 
@@ -21,10 +21,8 @@ class XpbdStepper final : public Stepper {
       : options_(options),
         model_(system.model()),
         work_(work),
-        external_(model_, false),
+        external_(system, ExplicitExternalForce::Dampers::to_neither, "xpbd"),
         inverse_mass_(model_.mass.size()),
-        spring_multiplier_(model_.springs.size()),
-        anchor_multiplier_(model_.anchors.size()),
         start_(system.degrees_of_freedom()),
         displacement_(system.degrees_of_freedom()),
         force_(system.degrees_of_freedom()) {
@@ -39,6 +37,10 @@ class XpbdStepper final : public Stepper {
     return {};
   }
 
+  /// A step depends on y only: multipliers start from zero in each substep.
+  void restart(double, ConstVectorRef) override {}
+  void serialise(StateArchive&) override {}
+
  private:
   void make_substep(double tau, VectorRef y) {
     const Index n = force_.size();
@@ -52,11 +54,13 @@ class XpbdStepper final : public Stepper {
     for (Index c = 0; c < n; ++c) {
       displacement_[c] = tau * (v[c] + tau * inverse_mass_[static_cast<std::size_t>(c / 3)] * force_[c]);
     }
-    std::ranges::fill(spring_multiplier_, 0.0);
-    std::ranges::fill(anchor_multiplier_, Vec3<double>{});
+    spring_multiplier_.assign(model_.springs.size(), 0.0);
+    anchor_multiplier_.assign(model_.anchors.size(), Vec3<double>{});
     for (int sweep = 0; sweep < options_.iterations; ++sweep) {
-      mechanics::with_spring_law(model_.springs.law, [&](auto law) {
-        for (std::size_t e = 0; e < model_.springs.size(); ++e) project_spring<law()>(e, tau);
+      model_.springs.for_each_group([&](const mechanics::SpringGroup& group, std::size_t begin) {
+        mechanics::with_spring_law(group.law, [&](auto law) {
+          for (std::size_t e = begin; e < begin + group.size; ++e) project_spring<law()>(e, tau);
+        });
       });
       for (std::size_t a = 0; a < model_.anchors.size(); ++a) project_anchor(a, tau);
     }
@@ -136,8 +140,7 @@ std::unique_ptr<Integrator> make_xpbd(const XpbdOptions& options) {
                   .order_with_velocity_forces = 1,
                   .stages = options.substeps,
                   .is_explicit = false,
-                  .needs_second_order = true,
-                  .needs_springs = true,
+                  .needs = {Capability::second_order, Capability::springs},
                   .formula =
                       "q' = q + h v + h² M^-1 f_ext;  per spring q' += M^-1 grad C' dl with "
                       "dl = -(C + l/(k h²) + ...)/(grad C M^-1 grad C' + 1/(k h²));  v' = (q' - q)/h",

@@ -7,7 +7,7 @@ namespace fw::integrators {
 ImplicitAcceleration::ImplicitAcceleration(const SecondOrderSystem& system, Work& work)
     : system_(system),
       work_(work),
-      newton_(system.degrees_of_freedom(), linalg::LinearSolverKind::sparse_lu),
+      newton_(system.degrees_of_freedom()),
       matrix_(system),
       base_position_(system.degrees_of_freedom()),
       base_velocity_(system.degrees_of_freedom()),

@@ -32,6 +32,10 @@ class ImplicitAcceleration final : private linalg::NewtonProblem {
   /// `a` holds the initial guess and receives the solution. Fails with Newton's Status.
   Status solve(const Coefficients& coefficients, VectorRef a);
 
+  /// Forgets the factors of Newton's iteration.
+  void forget_matrix() { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) { newton_.serialise(archive); }
+
   const Vector& position() const { return position_; }  ///< q̂ + β₂ a at the solution
   const Vector& velocity() const { return velocity_; }  ///< v̂ + β₁ a at the solution
   const Vector& force() const { return force_; }        ///< f there
@@ -39,6 +43,7 @@ class ImplicitAcceleration final : private linalg::NewtonProblem {
  private:
   void residual(ConstVectorRef a, VectorRef out) override;
   const SparseMatrix& matrix(ConstVectorRef a) override;
+  std::uint64_t pattern_revision() const override { return system_.pattern_revision(); }
   void evaluate(ConstVectorRef a);
 
   const SecondOrderSystem& system_;

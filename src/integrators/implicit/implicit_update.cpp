@@ -1,50 +1,30 @@
 #include "integrators/implicit/implicit_update.hpp"
 
 #include "integrators/implicit/implicit_acceleration.hpp"
+#include "integrators/implicit/implicit_stage.hpp"
 
 namespace fw::integrators {
 
 namespace {
 
-class FirstOrderUpdate final : public ImplicitUpdate, private linalg::NewtonProblem {
+class FirstOrderUpdate final : public ImplicitUpdate {
  public:
   FirstOrderUpdate(const OdeSystem& system, Work& work)
-      : system_(system),
-        work_(work),
-        newton_(system.size(), linalg::LinearSolverKind::sparse_lu),
-        matrix_(system.jacobian_pattern()),
-        start_(system.size()),
-        slope_(system.size()) {}
+      : work_(work), newton_(system.size()), equation_(system, work) {}
 
   Status solve(double t, double c, ConstVectorRef w, VectorRef y, VectorRef slope) override {
-    time_ = t;
-    weight_ = c;
-    start_ = w;
-    Status status = newton_.solve(*this, y, 0.0, work_);
-    slope = (y - start_) / c;
+    equation_.set(t, c, w);
+    Status status = newton_.solve(equation_, y, 0.0, work_);
+    slope = (y - equation_.start()) / c;
     return status;
   }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
 
  private:
-  void residual(ConstVectorRef y, VectorRef out) override {
-    system_.rhs(time_, y, slope_);
-    ++work_.rhs_evaluations;
-    out = y - start_ - weight_ * slope_;
-  }
-  const SparseMatrix& matrix(ConstVectorRef y) override {
-    system_.jacobian(time_, y, matrix_);
-    ++work_.jacobian_evaluations;
-    matrix_.coeffs() *= -weight_;
-    add_to_diagonal(matrix_, 1.0);
-    return matrix_;
-  }
-
-  const OdeSystem& system_;
   Work& work_;
   linalg::Newton newton_;
-  SparseMatrix matrix_;
-  Vector start_, slope_;
-  double time_ = 0.0, weight_ = 0.0;
+  ImplicitStage equation_;
 };
 
 /// With y = (q, v): q' = w_q + c v', v' = w_v + c a, hence q' = w_q + c w_v + c² a.
@@ -66,6 +46,8 @@ class SecondOrderUpdate final : public ImplicitUpdate {
     y = w + c * slope;
     return {};
   }
+  void forget_matrix() override { equation_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { equation_.serialise(archive); }
 
  private:
   ImplicitAcceleration equation_;

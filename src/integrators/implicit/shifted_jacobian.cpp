@@ -6,34 +6,26 @@ namespace fw::integrators {
 
 namespace {
 
-using linalg::LinearSolverKind;
-
 class FirstOrderShift final : public ShiftedJacobian {
  public:
   FirstOrderShift(const OdeSystem& system, Work& work)
-      : system_(system),
-        work_(work),
-        solver_(linalg::make_linear_solver({.kind = LinearSolverKind::sparse_lu})),
-        matrix_(system.jacobian_pattern()),
-        right_side_(system.size()) {}
+      : work_(work), solver_(linalg::default_direct_solver()), matrix_(system), right_side_(system.size()) {}
 
   Status factorise(double t, ConstVectorRef y, double eta) override {
-    system_.jacobian(t, y, matrix_);
     ++work_.jacobian_evaluations;
-    matrix_.coeffs() *= -eta;
-    add_to_diagonal(matrix_, 1.0);
-    return solver_->factorise(matrix_, work_);
+    return solver_->factorise(matrix_.assemble(t, y, eta), work_);
   }
   Status solve(VectorRef r) override {
     right_side_ = r;
     return solver_->solve(right_side_, r, work_).status;
   }
+  void forget_matrix() override { solver_->forget(); }
+  void serialise(StateArchive& archive) override { solver_->serialise(archive); }
 
  private:
-  const OdeSystem& system_;
   Work& work_;
   std::unique_ptr<linalg::LinearSolver> solver_;
-  SparseMatrix matrix_;
+  ShiftedMatrix matrix_;
   Vector right_side_;
 };
 
@@ -42,7 +34,7 @@ class SecondOrderShift final : public ShiftedJacobian {
   SecondOrderShift(const SecondOrderSystem& system, Work& work)
       : system_(system),
         work_(work),
-        solver_(linalg::make_linear_solver({.kind = LinearSolverKind::sparse_lu})),
+        solver_(linalg::default_direct_solver()),
         matrix_(system),
         right_side_(system.degrees_of_freedom()),
         velocity_(system.degrees_of_freedom()) {}
@@ -66,6 +58,8 @@ class SecondOrderShift final : public ShiftedJacobian {
     }
     return status;
   }
+  void forget_matrix() override { solver_->forget(); }
+  void serialise(StateArchive& archive) override { solver_->serialise(archive); }
 
  private:
   const SecondOrderSystem& system_;

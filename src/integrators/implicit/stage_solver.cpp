@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/implicit/step_matrix.hpp"
+#include "integrators/implicit/implicit_stage.hpp"
 
 namespace fw::integrators {
 
@@ -16,15 +16,13 @@ linalg::SimplifiedNewtonOptions newton_options(const ImplicitOptions& options) {
 }
 
 /// Unknown Y, residual Y − ȳ − η f(t, Y), matrix I − η J.
-class FirstOrderStages final : public StageSolver, private linalg::NewtonProblem {
+class FirstOrderStages final : public StageSolver {
  public:
   FirstOrderStages(const OdeSystem& system, const ImplicitOptions& options, Work& work)
       : system_(system),
         work_(work),
         newton_(system.size(), newton_options(options)),
-        matrix_(system.jacobian_pattern()),
-        slope_(system.size()),
-        start_(system.size()),
+        equation_(system, work),
         state_(system.size()) {}
 
   void slope(double t, ConstVectorRef y, VectorRef k) override {
@@ -32,15 +30,13 @@ class FirstOrderStages final : public StageSolver, private linalg::NewtonProblem
     ++work_.rhs_evaluations;
   }
   Status solve(double t, double eta, ConstVectorRef start, VectorRef k) override {
-    start_ = start;
-    time_ = t;
-    eta_ = eta;
-    state_ = start_ + eta * k;
-    const double scale = start_.lpNorm<Eigen::Infinity>();
-    if (Status status = newton_.solve(*this, state_, eta, scale, rounding * scale, work_); !status.ok()) {
+    equation_.set(t, eta, start);
+    state_ = equation_.start() + eta * k;
+    const double scale = equation_.start().lpNorm<Eigen::Infinity>();
+    if (Status status = newton_.solve(equation_, state_, eta, scale, rounding * scale, work_); !status.ok()) {
       return status;
     }
-    k = (state_ - start_) / eta;
+    k = (state_ - equation_.start()) / eta;
     return {};
   }
   Status filter(double, VectorRef e) override {
@@ -48,26 +44,15 @@ class FirstOrderStages final : public StageSolver, private linalg::NewtonProblem
     state_ = e;
     return newton_.solve_linear(state_, e, work_);
   }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override { newton_.serialise(archive); }
 
  private:
-  void residual(ConstVectorRef y, VectorRef out) override {
-    slope(time_, y, slope_);
-    out = y - start_ - eta_ * slope_;
-  }
-  const SparseMatrix& matrix(ConstVectorRef y) override {
-    system_.jacobian(time_, y, matrix_);
-    ++work_.jacobian_evaluations;
-    matrix_.coeffs() *= -eta_;
-    add_to_diagonal(matrix_, 1.0);
-    return matrix_;
-  }
-
   const OdeSystem& system_;
   Work& work_;
   linalg::SimplifiedNewton newton_;
-  SparseMatrix matrix_;
-  Vector slope_, start_, state_;
-  double time_ = 0.0, eta_ = 0.0;
+  ImplicitStage equation_;
+  Vector state_;
 };
 
 /// Unknown V, residual M (V − v̄) − η f(t, q̄ + η V, V), matrix M − η D − η² K.
@@ -120,6 +105,11 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
     e.tail(n) = velocity_;
     return status;
   }
+  void forget_matrix() override { newton_.forget_matrix(); }
+  void serialise(StateArchive& archive) override {
+    matrix_.serialise(archive);
+    newton_.serialise(archive);
+  }
 
  private:
   void evaluate(double t, ConstVectorRef q, ConstVectorRef v) {
@@ -140,6 +130,7 @@ class SecondOrderStages final : public StageSolver, private linalg::NewtonProble
     ++work_.jacobian_evaluations;
     return matrix_.assemble(time_, position_, v, eta_, TangentModel::exact);
   }
+  std::uint64_t pattern_revision() const override { return system_.pattern_revision(); }
 
   const SecondOrderSystem& system_;
   const ForceSplitting* splitting_;

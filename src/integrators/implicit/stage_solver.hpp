@@ -39,6 +39,11 @@ class StageSolver {
   /// e ← (I − ηJ)⁻¹ e with the matrix made last: a filter that keeps an error estimate from being governed by
   /// components that the scheme damps [Hairer, Wanner 1996, IV.8]. Leaves e where there is no matrix yet.
   virtual Status filter(double eta, VectorRef e) = 0;
+
+  /// Forgets the matrix and its factors: the next solve works as the first one did.
+  virtual void forget_matrix() = 0;
+  /// Visits what the next solve and the next filter depend on.
+  virtual void serialise(StateArchive& archive) = 0;
 };
 
 /// For the whole right-hand side.

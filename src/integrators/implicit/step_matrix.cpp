@@ -1,48 +1,35 @@
 #include "integrators/implicit/step_matrix.hpp"
 
-#include <algorithm>
 #include <stdexcept>
+
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::integrators {
 
-namespace {
+ShiftedMatrix::ShiftedMatrix(const OdeSystem& system)
+    : system_(system), watch_(system.pattern_revision()), matrix_(system.jacobian_pattern()) {}
 
-/// Position of entry (row, column) in the value array of a compressed matrix with sorted rows.
-int find_entry(const SparseMatrix& matrix, int row, int column) {
-  const int* begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column];
-  const int* end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
-  const int* entry = std::lower_bound(begin, end, row);
-  if (entry == end || *entry != row) {
-    throw std::logic_error("the pattern of a tangent matrix must be symmetric with a full diagonal");
-  }
-  return static_cast<int>(entry - matrix.innerIndexPtr());
-}
-
-}  // namespace
-
-void add_to_diagonal(SparseMatrix& matrix, double value) {
-  for (int column = 0; column < static_cast<int>(matrix.cols()); ++column) {
-    matrix.valuePtr()[find_entry(matrix, column, column)] += value;
-  }
+const SparseMatrix& ShiftedMatrix::assemble(double t, ConstVectorRef y, double eta) {
+  if (watch_.has_changed(system_.pattern_revision())) matrix_ = system_.jacobian_pattern();
+  system_.jacobian(t, y, matrix_);
+  matrix_.coeffs() *= -eta;
+  sparse::add_to_diagonal(matrix_, 1.0);
+  return matrix_;
 }
 
 StepMatrix::StepMatrix(const SecondOrderSystem& system) : StepMatrix(system, nullptr) {}
 
 StepMatrix::StepMatrix(const SecondOrderSystem& system, const ForceSplitting* splitting)
-    : system_(system),
-      splitting_(splitting),
-      stiffness_(system.tangent_pattern()),
-      damping_(stiffness_),
-      matrix_(stiffness_) {
-  const int n = static_cast<int>(matrix_.cols());
-  diagonal_.resize(static_cast<std::size_t>(n));
-  transpose_.resize(static_cast<std::size_t>(matrix_.nonZeros()));
-  for (int column = 0; column < n; ++column) {
-    diagonal_[static_cast<std::size_t>(column)] = find_entry(matrix_, column, column);
-    for (int k = matrix_.outerIndexPtr()[column]; k < matrix_.outerIndexPtr()[column + 1]; ++k) {
-      transpose_[static_cast<std::size_t>(k)] = find_entry(matrix_, column, matrix_.innerIndexPtr()[k]);
-    }
-  }
+    : system_(system), splitting_(splitting), watch_(system.pattern_revision()) {
+  make_pattern();
+}
+
+void StepMatrix::make_pattern() {
+  stiffness_ = system_.tangent_pattern();
+  damping_ = stiffness_;
+  matrix_ = stiffness_;
+  diagonal_ = sparse::diagonal_slots(matrix_);
+  transpose_ = sparse::transpose_slots(matrix_);
 }
 
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v, double h,
@@ -52,6 +39,7 @@ const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVector
 
 const SparseMatrix& StepMatrix::assemble(double t, ConstVectorRef q, ConstVectorRef v,
                                          const MatrixFactors& factors, TangentModel model) {
+  if (watch_.has_changed(system_.pattern_revision())) make_pattern();
   if (splitting_ != nullptr) {
     if (model != TangentModel::exact)
       throw std::logic_error("the stiff tangent is available as \"exact\" only");

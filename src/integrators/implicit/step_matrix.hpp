@@ -1,11 +1,25 @@
 #pragma once
 
-#include "ode/second_order_system.hpp"
+#include "core/state_archive.hpp"
+#include "ode/ode_system.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::integrators {
 
-/// Adds `value` to every diagonal entry of a compressed matrix whose pattern has a full diagonal.
-void add_to_diagonal(SparseMatrix& matrix, double value);
+/// The matrix I − ηJ of an implicit step on a first-order system. Its pattern is made once, and anew when the
+/// system's `pattern_revision` has changed.
+class ShiftedMatrix {
+ public:
+  explicit ShiftedMatrix(const OdeSystem& system);
+
+  /// I − ηJ(t, y).
+  const SparseMatrix& assemble(double t, ConstVectorRef y, double eta);
+
+ private:
+  const OdeSystem& system_;
+  PatternWatch watch_;
+  SparseMatrix matrix_;
+};
 
 /// The factors of a combination of mass, damping and stiffness.
 struct MatrixFactors {
@@ -15,7 +29,7 @@ struct MatrixFactors {
 };
 
 /// The matrix A = M − h D − h² K of an implicit step on a second-order system [Zachmann 2011, S26, extended
-/// by D]. Its pattern is made once.
+/// by D]. Its pattern is made once, and anew when the system's `pattern_revision` has changed.
 class StepMatrix {
  public:
   explicit StepMatrix(const SecondOrderSystem& system);
@@ -38,9 +52,15 @@ class StepMatrix {
   /// K as it was assembled last.
   const SparseMatrix& stiffness() const { return stiffness_; }
 
+  /// Visits K.
+  void serialise(StateArchive& archive) { archive.visit("stiffness", stiffness_); }
+
  private:
+  void make_pattern();
+
   const SecondOrderSystem& system_;
   const ForceSplitting* splitting_;  ///< null: the whole force
+  PatternWatch watch_;
   SparseMatrix stiffness_, damping_, matrix_;
   std::vector<int> diagonal_;   ///< position of each diagonal entry in the value array
   std::vector<int> transpose_;  ///< position of (j, i) for the entry (i, j)

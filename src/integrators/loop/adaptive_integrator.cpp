@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "integrators/loop/hermite_interpolant.hpp"
 #include "integrators/loop/initial_step.hpp"
-#include "integrators/loop/run_checks.hpp"
+#include "integrators/loop/run_loop.hpp"
 
 namespace fw::integrators {
 
@@ -20,154 +19,144 @@ constexpr double stretch_to_end = 1.01;
 constexpr double smallest_step_in_ulps = 16.0;
 constexpr int most_failures_in_a_row = 100;
 
-void check_tolerances(const MethodInfo& info, const AdaptiveStep& control) {
-  const auto require = [&](bool holds, const std::string& what) {
-    if (!holds) throw InputError(fmt::format("method \"{}\": {}", info.name, what));
-  };
-  require(std::isfinite(control.relative_tolerance) && control.relative_tolerance > 0.0,
-          fmt::format("relative tolerance: found {}, expected > 0", control.relative_tolerance));
-  require(std::isfinite(control.absolute_tolerance) && control.absolute_tolerance > 0.0,
-          fmt::format("absolute tolerance: found {}, expected > 0", control.absolute_tolerance));
-  require(control.initial_step >= 0.0 && std::isfinite(control.initial_step),
-          fmt::format("initial step: found {}, expected >= 0", control.initial_step));
-  require(control.minimum_step >= 0.0 && control.maximum_step > control.minimum_step,
-          fmt::format("step limits: found {} to {}, expected 0 <= minimum < maximum", control.minimum_step,
-                      control.maximum_step));
-  require(control.initial_step == 0.0 || control.initial_step >= control.minimum_step,
-          fmt::format("initial step: found {}, expected at least the minimum of {}", control.initial_step,
-                      control.minimum_step));
-}
-
-/// One run with steps chosen by the error estimate.
-class AdaptiveRun {
+/// Steps chosen by the error estimate.
+class AdaptiveSteps final : public StepSource {
  public:
-  AdaptiveRun(const MethodInfo& info, const ControllerOptions& options, const Ivp& ivp,
-              const AdaptiveStep& control, Observer& observer)
-      : info_(info),
-        options_(options),
-        ivp_(ivp),
+  AdaptiveSteps(const MethodInfo& info, const ControllerOptions& options,
+                std::unique_ptr<AdaptiveStepper> stepper, const Ivp& ivp, const AdaptiveStep& control,
+                bool is_resumed, Work& work)
+      : options_(options),
+        stepper_(std::move(stepper)),
         control_(control),
-        observer_(observer),
-        controller_(options, std::min(info.order, info.embedded_order) + 1) {}
-
-  Solution run(const AdaptiveStepperFactory& make_stepper) {
-    solution_.time = ivp_.t0;
-    solution_.state = ivp_.y0;
-    const std::function<void(double, VectorRef)> nothing_yet;
-    if (!observer_.observe({0, ivp_.t0, ivp_.y0, false, nothing_yet})) {
-      solution_.status = {StatusCode::stopped_by_observer, "stopped at the start"};
-      return std::move(solution_);
-    }
-    const std::unique_ptr<AdaptiveStepper> stepper = make_stepper(ivp_, solution_.work);
-    solution_.status = advance(*stepper);
-    return std::move(solution_);
+        t1_(ivp.t1),
+        work_(work),
+        controller_(options, std::min(info.order, info.embedded_order) + 1),
+        error_(ivp.y0.size()),
+        h_(is_resumed ? 0.0
+           : control.initial_step > 0.0
+               ? std::min({control.initial_step, control.maximum_step, ivp.t1 - ivp.t0})
+               : std::max(initial_step(ivp, control, options.norm, info.order, work), control.minimum_step)) {
   }
+
+  Status propose(LoopStep& step) override {
+    const double t = step.start;
+    const double rest = t1_ - t;
+    step.is_last = h_ * stretch_to_end >= rest && rest <= control_.maximum_step;
+    const double smallest = std::max(
+        control_.minimum_step, smallest_step_in_ulps * (std::nextafter(std::abs(t), 1e300) - std::abs(t)));
+    if (!step.is_last && h_ < smallest) {
+      return {StatusCode::step_too_small,
+              fmt::format(
+                  "at t = {:.6g} the error test asks for a step of {:.3g}, below the smallest of {:.3g}{}", t,
+                  h_, smallest, last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
+    }
+    if (step.is_last) {
+      h_ = rest;
+    } else if (2.0 * h_ > rest) {
+      h_ = std::max(0.5 * rest, smallest);  // two even steps instead of a long and a short one
+    }
+    step.end = t + h_;
+    return {};
+  }
+
+  Status attempt(LoopStep& step, ConstVectorRef y, VectorRef y_new) override {
+    estimate_ = estimate(step.start, y, y_new);
+    step.is_accepted = estimate_ <= 1.0;
+    if (step.is_accepted) {
+      failures_ = 0;
+      last_failure_.clear();
+      return {};
+    }
+    ++work_.rejected_steps;
+    if (++failures_ > most_failures_in_a_row) {
+      return {StatusCode::step_too_small,
+              fmt::format("at t = {:.6g} the step failed {} times in a row{}", step.start, failures_,
+                          last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
+    }
+    h_ *= controller_.after_rejection(estimate_);
+    return {};
+  }
+
+  void accept(const LoopStep& step) override {
+    stepper_->accept();
+    start_ = step.start;
+    end_ = step.end;
+    h_ = std::min(h_ * controller_.after_acceptance(estimate_), control_.maximum_step);
+  }
+
+  bool has_dense_output() const override { return stepper_->has_dense_output(); }
+  void interpolate(double t, VectorRef out) override {
+    stepper_->interpolate((t - start_) / (end_ - start_), out);
+  }
+
+  /// The length of the step to come stays: a projection at each step must not cost a search for it. What the
+  /// controller remembers of errors before goes.
+  void restart(double t, ConstVectorRef y) override {
+    controller_.restart();
+    stepper_->restart(t, y);
+  }
+
+  void serialise(StateArchive& archive) override {
+    archive.require_equal("relative tolerance", control_.relative_tolerance);
+    archive.require_equal("absolute tolerance", control_.absolute_tolerance);
+    archive.require_equal("minimum step", control_.minimum_step);
+    archive.require_equal("maximum step", control_.maximum_step);
+    archive.visit("step to come", h_);
+    archive.visit("start of the step", start_);
+    archive.visit("end of the step", end_);
+    controller_.serialise(archive);
+    stepper_->serialise(archive);
+  }
+  void collect_work(Work&) const override {}
 
  private:
-  Status advance(AdaptiveStepper& stepper) {
-    Vector y_new(ivp_.y0.size()), error(ivp_.y0.size());
-    HermiteInterpolant hermite(*ivp_.system, solution_.work);
-    double step_start = ivp_.t0, step_end = ivp_.t0;
-    const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) {
-      if (stepper.has_dense_output()) {
-        stepper.interpolate((t - step_start) / (step_end - step_start), out);
-      } else {
-        hermite(t, out);
-      }
-    };
-    double& t = solution_.time;
-    Vector& y = solution_.state;
-    double h = control_.initial_step > 0.0
-                   ? std::min({control_.initial_step, control_.maximum_step, ivp_.t1 - ivp_.t0})
-                   : std::max(initial_step(ivp_, control_, options_.norm, info_.order, solution_.work),
-                              control_.minimum_step);
-    int failures = 0;
-    for (std::uint64_t steps = 0;;) {
-      const double rest = ivp_.t1 - t;
-      const bool last = h * stretch_to_end >= rest && rest <= control_.maximum_step;
-      const double smallest = std::max(
-          control_.minimum_step, smallest_step_in_ulps * (std::nextafter(std::abs(t), 1e300) - std::abs(t)));
-      if (!last && h < smallest) {
-        return {StatusCode::step_too_small,
-                fmt::format(
-                    "at t = {:.6g} the error test asks for a step of {:.3g}, below the smallest of {:.3g}{}",
-                    t, h, smallest, last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
-      }
-      if (last) {
-        h = rest;
-      } else if (2.0 * h > rest) {
-        h = std::max(0.5 * rest, smallest);  // two even steps instead of a long and a short one
-      }
-      if (steps + solution_.work.rejected_steps >= control_.maximum_steps) {
-        return {StatusCode::step_limit, fmt::format("{} steps did not reach the end: stopped at t = {:.6g}",
-                                                    control_.maximum_steps, t)};
-      }
-      const double estimate = try_step(stepper, t, h, y, y_new, error);
-      if (!(estimate <= 1.0)) {
-        ++solution_.work.rejected_steps;
-        if (++failures > most_failures_in_a_row) {
-          return {StatusCode::step_too_small,
-                  fmt::format("at t = {:.6g} the step failed {} times in a row{}", t, failures,
-                              last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
-        }
-        h *= controller_.after_rejection(estimate);
-        continue;
-      }
-      failures = 0;
-      last_failure_.clear();
-      ++steps;
-      if (Status status = check_state(y_new, t + h, steps); !status.ok()) return status;
-      stepper.accept();
-      ++solution_.work.accepted_steps;
-      step_start = t;
-      step_end = last ? ivp_.t1 : t + h;
-      if (!stepper.has_dense_output()) hermite.set_step(step_start, step_end, y, y_new);
-      const bool go_on = observer_.observe({steps, step_end, y_new, last, interpolate});
-      t = step_end;
-      y.swap(y_new);
-      if (last) return {};
-      if (!go_on) return {StatusCode::stopped_by_observer, fmt::format("stopped at t = {:.6g}", t)};
-      h = std::min(h * controller_.after_acceptance(estimate), control_.maximum_step);
-    }
-  }
-
   /// The error in units of the tolerance; NaN where the step could not be made.
-  double try_step(AdaptiveStepper& stepper, double t, double h, ConstVectorRef y, VectorRef y_new,
-                  VectorRef error) {
-    const Status status = stepper.attempt(t, h, y, y_new, error);
+  double estimate(double t, ConstVectorRef y, VectorRef y_new) {
+    const Status status = stepper_->attempt(t, h_, y, y_new, error_);
     if (!status.ok()) {
       last_failure_ = status.describe();
       return std::numeric_limits<double>::quiet_NaN();
     }
-    const double estimate = error_in_tolerances(options_.norm, control_, error, y, y_new);
+    const double estimate = error_in_tolerances(options_.norm, control_, error_, y, y_new);
     if (!std::isfinite(estimate)) last_failure_ = "the error estimate is not finite";
     return estimate;
   }
 
-  const MethodInfo& info_;
   const ControllerOptions& options_;
-  const Ivp& ivp_;
+  std::unique_ptr<AdaptiveStepper> stepper_;
   const AdaptiveStep& control_;
-  Observer& observer_;
+  double t1_;
+  Work& work_;
   StepSizeController controller_;
-  Solution solution_;
+  Vector error_;
+  double h_;
+  double start_ = 0.0, end_ = 0.0;  ///< of the step accepted last
+  double estimate_ = 0.0;           ///< of the last attempt
+  int failures_ = 0;                ///< in a row
   std::string last_failure_;
 };
 
 }  // namespace
 
-Solution AdaptiveIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const {
+Solution AdaptiveIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                                      const SolveOptions& options) const {
   if (const auto* fixed = std::get_if<FixedStep>(&control)) {
     return run_fixed_steps(
         info_,
         [this](const Ivp& problem, double, Work& work) -> std::unique_ptr<Stepper> {
           return make_stepper_(problem, work);
         },
-        ivp, *fixed, observer);
+        ivp, *fixed, observer, options);
   }
   const auto& adaptive = std::get<AdaptiveStep>(control);
-  check_tolerances(info_, adaptive);
-  return AdaptiveRun(info_, options_, ivp, adaptive, observer).run(make_stepper_);
+  check_tolerances(info_.name, adaptive);
+  return run_loop(
+      info_, ivp,
+      [&](Work& work) -> std::unique_ptr<StepSource> {
+        return std::make_unique<AdaptiveSteps>(info_, options_, make_stepper_(ivp, work), ivp, adaptive,
+                                               !options.resume.empty(), work);
+      },
+      observer, options, adaptive.maximum_steps);
 }
 
 }  // namespace fw::integrators

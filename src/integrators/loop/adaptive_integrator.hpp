@@ -32,7 +32,8 @@ class AdaptiveIntegrator final : public Integrator {
   }
 
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions& options) const override;
 
   MethodInfo info_;
   ControllerOptions options_;

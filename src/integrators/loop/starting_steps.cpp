@@ -77,6 +77,10 @@ class ExplicitStartingSteps final : public Stepper {
     return {};
   }
 
+  /// A step depends on (t, y) only.
+  void restart(double, ConstVectorRef) override {}
+  void serialise(StateArchive&) override {}
+
  private:
   const OdeSystem& system_;
   Work& work_;
@@ -111,6 +115,9 @@ class ImplicitStartingSteps final : public Stepper {
     y = table_.limit();
     return {};
   }
+
+  void restart(double, ConstVectorRef) override { update_->forget_matrix(); }
+  void serialise(StateArchive& archive) override { update_->serialise(archive); }
 
  private:
   std::unique_ptr<ImplicitUpdate> update_;

@@ -64,4 +64,15 @@ double StepSizeController::after_rejection(double error) {
   return std::clamp(options_.safety * std::pow(error, -exponent_), options_.smallest_factor, options_.safety);
 }
 
+void StepSizeController::restart() {
+  previous_ = before_previous_ = 1.0;
+  rejected_ = false;
+}
+
+void StepSizeController::serialise(StateArchive& archive) {
+  archive.visit("last error", previous_);
+  archive.visit("last error but one", before_previous_);
+  archive.visit("step was rejected", rejected_);
+}
+
 }  // namespace fw::integrators

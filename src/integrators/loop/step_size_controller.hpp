@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/state_archive.hpp"
 #include "core/types.hpp"
 #include "ode/step_control.hpp"
 
@@ -42,6 +43,10 @@ class StepSizeController {
   double after_acceptance(double error);
   /// Factor (< 1) of the step after a rejected one. A step that follows a rejection does not grow.
   double after_rejection(double error);
+
+  /// Forgets the errors before.
+  void restart();
+  void serialise(StateArchive& archive);
 
  private:
   ControllerOptions options_;

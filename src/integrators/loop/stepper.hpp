@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/state_archive.hpp"
 #include "ode/integrator.hpp"
 
 namespace fw::integrators {
@@ -14,6 +15,15 @@ class Stepper {
 
   /// Advances y from t to t + h in place. On failure y is undefined.
   virtual Status step(double t, double h, VectorRef y) = 0;
+
+  /// The state is y at t, which no step has led to: forgets slopes, differences, histories, guesses and
+  /// factorised matrices of the old one. The steps that follow are those of a new stepper from (t, y), bit
+  /// for bit.
+  virtual void restart(double t, ConstVectorRef y) = 0;
+
+  /// Visits every member that a later step reads before it writes it. A new stepper of the same method,
+  /// problem and step that has loaded them goes on bit for bit. Throws InputError where it cannot be saved.
+  virtual void serialise(StateArchive& archive) = 0;
 };
 
 /// A stepper that estimates its error, so that its steps can be chosen.
@@ -50,18 +60,28 @@ class FixedStepIntegrator final : public Integrator {
   const MethodInfo& info() const override { return info_; }
   const ExtendedSolver& extended_solver() const override { return extended_solver_; }
 
+  /// The state of a run of its own with steps `h`, for a look at single steps.
+  std::unique_ptr<Stepper> make_stepper(const Ivp& ivp, double h, Work& work) const {
+    return make_stepper_(ivp, h, work);
+  }
+
  private:
-  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer) const override;
+  Solution do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
+                    const SolveOptions& options) const override;
 
   MethodInfo info_;
   StepperFactory make_stepper_;
   ExtendedSolver extended_solver_;
 };
 
-/// The shared loop: every step of `control` with the stepper that `make_stepper` makes. Inside a step the
+/// How the interval divides into constant steps for this method: one that carries a history takes no shorter
+/// last step. Throws InputError as `count_steps` does.
+StepCount count_steps_of(const MethodInfo& info, const Ivp& ivp, const FixedStep& control);
+
+/// Every step of `control` with the stepper that `make_stepper` makes, t_n = t₀ + n·h. Inside a step the
 /// observer can interpolate by the stepper's dense output or the cubic Hermite polynomial (slopes at both
 /// ends, which `Work` counts).
 Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp,
-                         const FixedStep& control, Observer& observer);
+                         const FixedStep& control, Observer& observer, const SolveOptions& options);
 
 }  // namespace fw::integrators

@@ -50,6 +50,15 @@ class LinearisedStepper final : public Stepper {
     return {};
   }
 
+  void restart(double, ConstVectorRef) override {
+    increment_.setZero();
+    solver_->forget();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("increment", increment_);  // where an iterative solver starts
+    solver_->serialise(archive);
+  }
+
  private:
   Status advise(Status status) const {
     if (status.code == StatusCode::matrix_indefinite && options_.tangent != TangentModel::psd_projection) {
@@ -83,7 +92,10 @@ std::unique_ptr<Integrator> make_implicit_euler_linearised(const LinearisedOptio
       .is_explicit = false,
       .is_a_stable = true,
       .is_l_stable = true,
-      .needs_second_order = true,
+      // The tangents other than the exact one are of spring elements.
+      .needs = options.tangent == TangentModel::exact
+                   ? Capabilities{Capability::second_order}
+                   : Capabilities{Capability::second_order, Capability::springs},
       .iteration_tolerance = linalg::find_linear_solver(options.linear_solver.kind).is_iterative
                                  ? options.linear_solver.relative_tolerance
                                  : 0.0,

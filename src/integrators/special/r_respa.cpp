@@ -8,6 +8,7 @@
 #include "integrators/implicit/implicit_kick.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "ode/force_splitting.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::integrators {
 
@@ -23,6 +24,7 @@ class ForcePart final : public SecondOrderSystem {
       : whole_(whole),
         splitting_(*whole.force_splitting()),
         kind_(kind),
+        watch_(whole.pattern_revision()),
         product_(whole.degrees_of_freedom()) {
     if (whole.force_class() == ForceClass::velocity) damping_ = whole.tangent_pattern();
   }
@@ -57,6 +59,7 @@ class ForcePart final : public SecondOrderSystem {
   void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq, ConstVectorRef dv,
                        VectorRef out) const override {
     if (!dq.isZero(0.0)) throw std::logic_error("a part of the forces multiplies by its damping only");
+    if (watch_.has_changed(whole_.pattern_revision())) damping_ = whole_.tangent_pattern();
     splitting_.stiff_damping(t, q, v, damping_);
     product_.noalias() = damping_ * dv;
     if (kind_ == Kind::stiff) {
@@ -66,12 +69,13 @@ class ForcePart final : public SecondOrderSystem {
     whole_.tangent_product(t, q, v, dq, dv, out);
     out -= product_;
   }
-  const ForceSplitting* force_splitting() const override { return nullptr; }
+  std::uint64_t pattern_revision() const override { return whole_.pattern_revision(); }
 
  private:
   const SecondOrderSystem& whole_;
   const ForceSplitting& splitting_;
   Kind kind_;
+  mutable PatternWatch watch_;
   mutable SparseMatrix damping_;  ///< of the stiff part
   mutable Vector product_;
 };
@@ -90,10 +94,7 @@ class RespaStepper final : public Stepper {
         stiff_force_(system_.degrees_of_freedom()),
         soft_force_(system_.degrees_of_freedom()),
         held_(system_.degrees_of_freedom()) {
-    const Index n = held_.size();
-    stiff_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), stiff_force_);
-    soft_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), soft_force_);
-    work.rhs_evaluations += 2;
+    restart(ivp.t0, ivp.y0);
   }
 
   Status step(double t, double h, VectorRef y) override {
@@ -117,6 +118,17 @@ class RespaStepper final : public Stepper {
     held_ = v;
     v += (0.5 * h) * inverse_mass_.cwiseProduct(soft_force_);
     return soft_kick_.solve(t + h, 0.5 * h, q, held_, v, soft_force_);
+  }
+
+  void restart(double t, ConstVectorRef y) override {
+    const Index n = held_.size();
+    stiff_.force(t, y.head(n), y.tail(n), stiff_force_);
+    soft_.force(t, y.head(n), y.tail(n), soft_force_);
+    work_.rhs_evaluations += 2;
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("stiff force", stiff_force_);
+    archive.visit("soft force", soft_force_);
   }
 
  private:
@@ -143,8 +155,7 @@ std::unique_ptr<Integrator> make_r_respa(const RespaOptions& options) {
                   .stages = options.inner_steps + 1,
                   .is_symplectic = true,
                   .is_symmetric = true,
-                  .needs_second_order = true,
-                  .needs_force_splitting = true,
+                  .needs = {Capability::second_order, Capability::force_splitting},
                   .formula =
                       "v += ½h M^-1 f_soft;  n times velocity Verlet of step h/n with f_stiff;  "
                       "v' = v + ½h M^-1 f_soft'",

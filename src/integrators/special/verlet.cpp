@@ -16,11 +16,9 @@ class VerletStepper final : public Stepper {
         kick_(system_, work),
         inverse_mass_(system_.mass().cwiseInverse()),
         force_(system_.degrees_of_freedom()),
-        displacement_(system_.degrees_of_freedom()),
+        displacement_(Vector::Zero(system_.degrees_of_freedom())),
         mean_velocity_(system_.degrees_of_freedom()) {
-    const Index n = force_.size();
-    system_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), force_);
-    ++work_.rhs_evaluations;
+    restart(ivp.t0, ivp.y0);
   }
 
   Status step(double t, double h, VectorRef y) override {
@@ -43,6 +41,18 @@ class VerletStepper final : public Stepper {
     ++work_.rhs_evaluations;
     v = mean_velocity_ + (0.5 * h) * inverse_mass_.cwiseProduct(force_);
     return {};
+  }
+
+  void restart(double t, ConstVectorRef y) override {
+    const Index n = force_.size();
+    system_.force(t, y.head(n), y.tail(n), force_);
+    ++work_.rhs_evaluations;
+    first_ = true;
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("force", force_);
+    archive.visit("displacement", displacement_);
+    archive.visit("first step", first_);
   }
 
  private:
@@ -70,7 +80,7 @@ std::unique_ptr<Integrator> make_verlet(VerletVelocity velocity) {
                   .is_multistep = true,
                   .is_symplectic = true,
                   .is_symmetric = true,
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula = central
                                  ? "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_{n+1} - x_{n-1})/(2h))"
                                  : "x_{n+1} = 2x_n - x_{n-1} + h² M^-1 f(t_n, x_n, (x_n - x_{n-1})/h)",

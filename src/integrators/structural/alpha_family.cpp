@@ -16,14 +16,12 @@ class AlphaStepper final : public Stepper {
   AlphaStepper(const AlphaParameters& parameters, const Ivp& ivp, Work& work)
       : parameters_(parameters),
         system_(*ivp.system->second_order()),
+        work_(work),
         equation_(system_, work),
         force_(system_.degrees_of_freedom()),
         acceleration_(system_.degrees_of_freedom()),
         new_acceleration_(system_.degrees_of_freedom()) {
-    const Index n = force_.size();
-    system_.force(ivp.t0, ivp.y0.head(n), ivp.y0.tail(n), force_);
-    ++work.rhs_evaluations;
-    acceleration_ = force_.cwiseQuotient(system_.mass());
+    restart(ivp.t0, ivp.y0);
   }
 
   Status step(double t, double h, VectorRef y) override {
@@ -48,9 +46,23 @@ class AlphaStepper final : public Stepper {
     return status;
   }
 
+  void restart(double t, ConstVectorRef y) override {
+    const Index n = force_.size();
+    system_.force(t, y.head(n), y.tail(n), force_);
+    ++work_.rhs_evaluations;
+    acceleration_ = force_.cwiseQuotient(system_.mass());
+    equation_.forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("force", force_);
+    archive.visit("acceleration", acceleration_);
+    equation_.serialise(archive);
+  }
+
  private:
   AlphaParameters parameters_;
   const SecondOrderSystem& system_;
+  Work& work_;
   ImplicitAcceleration equation_;
   Vector force_, acceleration_, new_acceleration_;
 };

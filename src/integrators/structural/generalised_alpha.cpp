@@ -6,8 +6,8 @@
 
 namespace fw::integrators {
 
-AlphaParameters chung_hulbert_parameters(double rho_infinity) {
-  const double rho = rho_infinity;
+AlphaParameters alpha_parameters(const GeneralisedAlphaOptions& options) {
+  const double rho = options.rho_infinity;
   if (!(rho >= 0.0 && rho <= 1.0)) {
     throw InputError(fmt::format("option rho_infinity: found {}, expected a number in [0, 1]", rho));
   }
@@ -21,7 +21,7 @@ AlphaParameters chung_hulbert_parameters(double rho_infinity) {
 }
 
 std::unique_ptr<Integrator> make_generalised_alpha(const GeneralisedAlphaOptions& options) {
-  const AlphaParameters parameters = chung_hulbert_parameters(options.rho_infinity);
+  const AlphaParameters parameters = alpha_parameters(options);
   MethodInfo info{
       .name = "generalised_alpha",
       .title = "Generalised alpha (Chung-Hulbert)",
@@ -33,7 +33,7 @@ std::unique_ptr<Integrator> make_generalised_alpha(const GeneralisedAlphaOptions
       .carries_more_than_state = true,
       .is_a_stable = parameters.is_unconditionally_stable(),
       .is_l_stable = options.rho_infinity == 0.0,
-      .needs_second_order = true,
+      .needs = {Capability::second_order},
       .formula =
           "M ((1 - alpha_m) a' + alpha_m a) = (1 - alpha_f) f(t+h, q', v') + alpha_f f(t, q, v);  "
           "q', v' as Newmark's",

@@ -12,7 +12,7 @@ struct GeneralisedAlphaOptions {
 
 /// α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)²; throws InputError
 /// unless 0 ≤ ρ ≤ 1.
-AlphaParameters chung_hulbert_parameters(double rho_infinity);
+AlphaParameters alpha_parameters(const GeneralisedAlphaOptions& options);
 
 /// The generalised-α scheme [Chung, Hulbert 1993]: of all schemes of `AlphaParameters` with the given damping
 /// at infinite frequency the one with the least damping of low frequencies; order 2.

@@ -3,18 +3,20 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
-#include "integrators/structural/alpha_family.hpp"
 
 namespace fw::integrators {
 
-std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options) {
+AlphaParameters alpha_parameters(const HhtAlphaOptions& options) {
   const double alpha = options.alpha;
   constexpr double rounding = 1e-12;  // of −1/3 as a decimal number
   if (!(alpha >= -1.0 / 3.0 - rounding && alpha <= 0.0)) {
     throw InputError(fmt::format("option alpha: found {}, expected a number in [-1/3, 0]", alpha));
   }
-  const AlphaParameters parameters{
-      .alpha_f = -alpha, .beta = 0.25 * (1.0 - alpha) * (1.0 - alpha), .gamma = 0.5 - alpha};
+  return {.alpha_f = -alpha, .beta = 0.25 * (1.0 - alpha) * (1.0 - alpha), .gamma = 0.5 - alpha};
+}
+
+std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options) {
+  const AlphaParameters parameters = alpha_parameters(options);
   MethodInfo info{.name = "hht_alpha",
                   .title = "Hilber-Hughes-Taylor alpha",
                   .family = "structural dynamics",
@@ -24,7 +26,7 @@ std::unique_ptr<Integrator> make_hht_alpha(const HhtAlphaOptions& options) {
                   .is_explicit = false,
                   .carries_more_than_state = true,
                   .is_a_stable = parameters.is_unconditionally_stable(),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "M a' = (1 + alpha) f(t+h, q', v') - alpha f(t, q, v);  Newmark with "
                       "gamma = ½ - alpha, beta = ¼(1 - alpha)²",

@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
-#include "integrators/structural/alpha_family.hpp"
 
 namespace fw::integrators {
 
-std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options) {
+AlphaParameters alpha_parameters(const NewmarkOptions& options) {
   if (!(options.beta >= 0.0 && options.beta <= 0.5)) {
     throw InputError(fmt::format("option beta: found {}, expected a number in [0, 0.5]", options.beta));
   }
   if (!(options.gamma >= 0.5 && options.gamma <= 1.0)) {
     throw InputError(fmt::format("option gamma: found {}, expected a number in [0.5, 1]", options.gamma));
   }
-  const AlphaParameters parameters{.beta = options.beta, .gamma = options.gamma};
+  return {.beta = options.beta, .gamma = options.gamma};
+}
+
+std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options) {
+  const AlphaParameters parameters = alpha_parameters(options);
   MethodInfo info{.name = "newmark",
                   .title = "Newmark's beta scheme",
                   .family = "structural dynamics",
@@ -25,7 +28,7 @@ std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options) {
                   .is_symplectic = options.beta == 0.0 && options.gamma == 0.5,
                   .is_symmetric = options.gamma == 0.5,
                   .is_a_stable = parameters.is_unconditionally_stable(),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "q' = q + h v + h² ((½ - beta) a + beta a');  v' = v + h ((1 - gamma) a + gamma a');  "
                       "M a' = f(t+h, q', v')",

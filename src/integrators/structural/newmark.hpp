@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "ode/integrator.hpp"
+#include "integrators/structural/alpha_family.hpp"
 
 namespace fw::integrators {
 
@@ -11,8 +11,11 @@ struct NewmarkOptions {
   double gamma = 0.5;  ///< ½: order 2; above: numerical damping and order 1
 };
 
-/// Newmark's scheme on M q̈ = f(t, q, v) [Newmark 1959]: see `AlphaParameters` with α_m = α_f = 0. With β = 0,
-/// γ = ½ it is velocity Verlet. Throws InputError unless 0 ≤ β ≤ ½ and ½ ≤ γ ≤ 1.
+/// α_m = α_f = 0; throws InputError unless 0 ≤ β ≤ ½ and ½ ≤ γ ≤ 1.
+AlphaParameters alpha_parameters(const NewmarkOptions& options);
+
+/// Newmark's scheme on M q̈ = f(t, q, v) [Newmark 1959]: see `AlphaParameters`. With β = 0, γ = ½ it is
+/// velocity Verlet.
 std::unique_ptr<Integrator> make_newmark(const NewmarkOptions& options = {});
 
 }  // namespace fw::integrators

@@ -73,6 +73,17 @@ class AdditiveStepper final : public AdaptiveStepper {
     return stages_->filter(h * parts_.stiff.a.back(), error);
   }
 
+  void restart(double, ConstVectorRef) override {
+    for (Vector& slope : stiff_) slope.setZero();
+    for (Vector& slope : soft_) slope.setZero();
+    stages_->forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("stiff slopes", stiff_);
+    archive.visit("soft slopes", soft_);
+    stages_->serialise(archive);
+  }
+
   void accept() override {}
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override {
@@ -150,8 +161,7 @@ std::unique_ptr<Integrator> make_additive_runge_kutta(const AdditiveTableau& tab
   info.is_adaptive = !tableau.explicit_part.b_embedded.empty() && !tableau.implicit_part.b_embedded.empty();
   info.stages = tableau.stages();
   info.is_explicit = false;
-  info.needs_second_order = true;
-  info.needs_force_splitting = true;
+  info.needs = {Capability::second_order, Capability::force_splitting};
   info.formula =
       "y_i = y + h sum_{j<=i} a_ij f_stiff(y_j) + h sum_{j<i} e_ij f_soft(y_j);  "
       "y' = y + h sum_i b_i f_stiff(y_i) + h sum_i d_i f_soft(y_i)";

@@ -66,6 +66,18 @@ class DiagonallyImplicitStepper final : public AdaptiveStepper {
     has_first_slope_ = true;
   }
 
+  void restart(double, ConstVectorRef) override {
+    guess_.setZero();
+    has_first_slope_ = false;
+    stages_->forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("first slope", slopes_.front());
+    archive.visit("first slope is known", has_first_slope_);
+    archive.visit("last slope", guess_);
+    stages_->serialise(archive);
+  }
+
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override {
     throw std::logic_error("diagonally implicit schemes have no dense output of their own");

@@ -25,9 +25,9 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
         first_same_as_last_(first_same_as_last),
         system_(*ivp.system),
         work_(work),
-        slopes_(static_cast<std::size_t>(tableau.stages), Vector(ivp.y0.size())),
+        slopes_(static_cast<std::size_t>(tableau.stages), Vector::Zero(ivp.y0.size())),
         stage_(ivp.y0.size()),
-        start_(tableau.dense.empty() ? 0 : ivp.y0.size()),
+        start_(Vector::Zero(tableau.dense.empty() ? 0 : ivp.y0.size())),
         error_weights_(tableau.b),
         dense_weights_(tableau.b.size()) {
     for (std::size_t i = 0; i < tableau.b_embedded.size(); ++i) error_weights_[i] -= tableau.b_embedded[i];
@@ -66,6 +66,15 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
     // Dense output needs the slopes of this step until the next one begins.
     has_first_slope_ = false;
     advance_slope_ = first_same_as_last_;
+  }
+
+  void restart(double, ConstVectorRef) override { has_first_slope_ = advance_slope_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("slopes", slopes_);  // all of them: dense output of the step before needs them
+    archive.visit("start", start_);
+    archive.visit("step", step_);
+    archive.visit("first slope is known", has_first_slope_);
+    archive.visit("last slope is the next first", advance_slope_);
   }
 
   bool has_dense_output() const override { return start_.size() > 0; }

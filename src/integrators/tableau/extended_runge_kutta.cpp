@@ -22,7 +22,7 @@ class ExtendedSteps {
         size_(static_cast<std::size_t>(ivp.y0.size())),
         jacobian_(system_.jacobian_pattern()),
         matrix_(jacobian_, exact_.stages, std::vector<char>(rounded_.a.size(), 1)),
-        solver_(linalg::make_linear_solver({.kind = linalg::LinearSolverKind::sparse_lu})),
+        solver_(linalg::default_direct_solver()),
         slopes_(size_ * static_cast<std::size_t>(exact_.stages), Float128(0)),
         stage_(size_),
         value_(size_),

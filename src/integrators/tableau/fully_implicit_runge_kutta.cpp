@@ -10,6 +10,7 @@
 #include "integrators/tableau/extended_precision_steps.hpp"
 #include "integrators/tableau/extended_runge_kutta.hpp"
 #include "integrators/tableau/tableau_info.hpp"
+#include "ode/pattern_watch.hpp"
 #include "schemes/derived_properties.hpp"
 #include "schemes/order_conditions.hpp"
 
@@ -76,6 +77,17 @@ class CoupledStepper : public Stepper, protected linalg::NewtonProblem {
         last_slopes_(slopes_),
         extrapolation_(tableau.values.a.size()) {}
 
+  void restart(double, ConstVectorRef) override {
+    slopes_.setZero();
+    last_step_ = 0.0;
+    newton_.forget_matrix();
+  }
+  void serialise(StateArchive& archive) override {
+    archive.visit("slopes", slopes_);
+    archive.visit("step of the slopes", last_step_);
+    newton_.serialise(archive);
+  }
+
  protected:
   /// Extrapolates the slopes of the last step to the nodes of this one; zero before the first.
   void predict(double h) {
@@ -126,6 +138,7 @@ class FirstOrderStepper final : public CoupledStepper {
   FirstOrderStepper(const CoupledTableau& tableau, const ImplicitOptions& options, const Ivp& ivp, Work& work)
       : CoupledStepper(tableau, ivp.y0.size(), options, work),
         system_(*ivp.system),
+        watch_(system_.pattern_revision()),
         jacobian_(system_.jacobian_pattern()),
         matrix_(jacobian_, tableau.values.stages, present_blocks(tableau, false)),
         ones_(Vector::Ones(ivp.y0.size())),
@@ -161,12 +174,18 @@ class FirstOrderStepper final : public CoupledStepper {
     }
   }
   const SparseMatrix& matrix(ConstVectorRef) override {
+    if (watch_.has_changed(system_.pattern_revision())) {
+      jacobian_ = system_.jacobian_pattern();
+      matrix_ = StageMatrix(jacobian_, tableau_.values.stages, present_blocks(tableau_, false));
+    }
     system_.jacobian(time_, start_, jacobian_);
     ++work_.jacobian_evaluations;
     return matrix_.assemble(ones_, {{jacobian_, tableau_.values.a, -step_}});
   }
+  std::uint64_t pattern_revision() const override { return system_.pattern_revision(); }
 
   const OdeSystem& system_;
+  PatternWatch watch_;
   SparseMatrix jacobian_;
   StageMatrix matrix_;
   Vector ones_, start_, state_, value_;
@@ -179,6 +198,7 @@ class SecondOrderStepper final : public CoupledStepper {
                      Work& work)
       : CoupledStepper(tableau, ivp.y0.size() / 2, options, work),
         system_(*ivp.system->second_order()),
+        watch_(system_.pattern_revision()),
         stiffness_(system_.tangent_pattern()),
         damping_(stiffness_),
         matrix_(stiffness_, tableau.values.stages, present_blocks(tableau, true)),
@@ -230,14 +250,20 @@ class SecondOrderStepper final : public CoupledStepper {
     }
   }
   const SparseMatrix& matrix(ConstVectorRef) override {
+    if (watch_.has_changed(system_.pattern_revision())) {
+      stiffness_ = damping_ = system_.tangent_pattern();
+      matrix_ = StageMatrix(stiffness_, tableau_.values.stages, present_blocks(tableau_, true));
+    }
     system_.stiffness(time_, start_position_, start_velocity_, TangentModel::exact, stiffness_);
     system_.damping(time_, start_position_, start_velocity_, damping_);
     ++work_.jacobian_evaluations;
     return matrix_.assemble(system_.mass(), {{damping_, tableau_.values.a, -step_},
                                              {stiffness_, tableau_.a_squared, -step_ * step_}});
   }
+  std::uint64_t pattern_revision() const override { return system_.pattern_revision(); }
 
   const SecondOrderSystem& system_;
+  PatternWatch watch_;
   SparseMatrix stiffness_, damping_;
   StageMatrix matrix_;
   Vector forces_, start_position_, start_velocity_, position_, velocity_, force_;
@@ -332,7 +358,7 @@ std::unique_ptr<Integrator> make_implicit_nystrom(const schemes::NystromTableau&
                   .is_explicit = false,
                   .is_symplectic = schemes::is_symplectic(exact),
                   .is_symmetric = schemes::is_symmetric(exact),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula =
                       "k_i = M^-1 f(t + c_i h, x + c_i h v + h² sum_j A_ij k_j, v + h sum_j a_ij k_j);  "
                       "x' = x + h v + h² sum_i B_i k_i;  v' = v + h sum_i b_i k_i",

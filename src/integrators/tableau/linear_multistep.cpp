@@ -25,7 +25,7 @@ struct Formula {
 /// The last k vectors of a run, [0] the oldest of them.
 class History {
  public:
-  History(std::size_t length, Index size) : values_(length, Vector(size)) {}
+  History(std::size_t length, Index size) : values_(length, Vector::Zero(size)) {}
 
   void push(ConstVectorRef value) {
     values_[first_] = value;
@@ -33,11 +33,17 @@ class History {
     ++count_;
   }
   bool full() const { return count_ >= values_.size(); }
+  void clear() { first_ = count_ = 0; }
+  void serialise(StateArchive& archive) {
+    archive.visit("history", values_);
+    archive.visit("place of the oldest", first_);
+    archive.visit("length of the history", count_);
+  }
   const Vector& operator[](std::size_t j) const { return values_[(first_ + j) % values_.size()]; }
 
  private:
   std::vector<Vector> values_;
-  std::size_t first_ = 0, count_ = 0;
+  std::uint64_t first_ = 0, count_ = 0;
 };
 
 class LinearMultistepStepper final : public Stepper {
@@ -49,7 +55,7 @@ class LinearMultistepStepper final : public Stepper {
         states_(formula.steps(), ivp.y0.size()),
         slopes_(formula.steps(), ivp.y0.size()),
         base_(ivp.y0.size()),
-        slope_(ivp.y0.size()) {
+        slope_(Vector::Zero(ivp.y0.size())) {
     if (!formula.is_explicit()) update_ = make_implicit_update(system_, work);
     if (formula.steps() > 1) {
       const int order = std::max(1, formula.order);  // of a formula with a seeded mistake it may be 0
@@ -83,6 +89,22 @@ class LinearMultistepStepper final : public Stepper {
     y += h * slope_;
     slope_is_known_ = true;
     return update_->solve(t + h, h * formula_.beta[k], base_, y, slope_);
+  }
+
+  void restart(double t, ConstVectorRef y) override {
+    states_.clear();
+    slopes_.clear();
+    slope_is_known_ = false;
+    if (update_) update_->forget_matrix();
+    if (start_) start_->restart(t, y);
+  }
+  void serialise(StateArchive& archive) override {
+    states_.serialise(archive);
+    slopes_.serialise(archive);
+    archive.visit("slope", slope_);
+    archive.visit("slope is known", slope_is_known_);
+    if (update_) update_->serialise(archive);
+    if (start_) start_->serialise(archive);
   }
 
  private:

@@ -92,6 +92,8 @@ class NystromKernel {
     refresh_pointers();
   }
 
+  std::vector<S>& first_acceleration() { return accelerations_.front(); }
+
   const NystromValues<S>& tableau() const { return tableau_; }
 
  private:
@@ -147,6 +149,12 @@ class NystromStepper final : public AdaptiveStepper {
   void accept() override {
     has_first_ = first_same_as_last_;
     if (first_same_as_last_) kernel_.advance_first_stage();
+  }
+
+  void restart(double, ConstVectorRef) override { has_first_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("first acceleration", kernel_.first_acceleration());
+    archive.visit("first acceleration is known", has_first_);
   }
 
   bool has_dense_output() const override { return false; }
@@ -215,8 +223,8 @@ std::unique_ptr<Integrator> make_nystrom(const NystromTableau& tableau, const Co
       .embedded_order = schemes::embedded_order(tableau),
       .is_symplectic = schemes::is_symplectic(exact),
       .is_symmetric = schemes::is_symmetric(exact),
-      .needs_second_order = true,
-      .needs_position_forces = position_forces,
+      .needs = position_forces ? Capabilities{Capability::second_order, Capability::position_forces}
+                               : Capabilities{Capability::second_order},
       .formula = position_forces
                      ? "k_i = M^-1 f(t + c_i h, x + c_i h v + h² sum_j A_ij k_j);  "
                        "x' = x + h v + h² sum_i B_i k_i;  v' = v + h sum_i b_i k_i"

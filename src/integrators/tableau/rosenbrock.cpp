@@ -119,6 +119,9 @@ class RosenbrockStepper final : public AdaptiveStepper {
     return {};
   }
 
+  void restart(double, ConstVectorRef) override { shift_->forget_matrix(); }
+  void serialise(StateArchive& archive) override { shift_->serialise(archive); }
+
   void accept() override {}
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override {

@@ -26,10 +26,17 @@ class SpectralRadiusEstimate {
  public:
   SpectralRadiusEstimate(const OdeSystem& system, Index size, Work& work)
       : system_(system), work_(work), vector_(size), product_(size) {
+    restart();
+  }
+
+  void restart() {
     // Every component takes part, none in tune with a mode of a regular chain.
-    for (Index k = 0; k < size; ++k) vector_[k] = 1.0 + 0.5 * std::sin(static_cast<double>(k * k + 1));
+    for (Index k = 0; k < vector_.size(); ++k) {
+      vector_[k] = 1.0 + 0.5 * std::sin(static_cast<double>(k * k + 1));
+    }
     vector_.normalize();
   }
+  void serialise(StateArchive& archive) { archive.visit("eigenvector", vector_); }
 
   /// The growth per product, as the geometric mean over two of them, since complex pairs make single ones
   /// oscillate.
@@ -93,6 +100,16 @@ class ChebyshevStepper final : public Stepper {
     }
     y = now_;
     return {};
+  }
+
+  void restart(double, ConstVectorRef) override {
+    spectral_radius_.restart();
+    steps_ = 0;
+  }
+  void serialise(StateArchive& archive) override {
+    spectral_radius_.serialise(archive);
+    archive.visit("spectral radius", radius_);
+    archive.visit("steps since the start", steps_);
   }
 
  private:

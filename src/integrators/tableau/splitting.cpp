@@ -60,7 +60,7 @@ class SplittingStepper final : public Stepper {
         work_(work),
         kick_(system_, work),
         inverse_mass_(system_.mass().cwiseInverse()),
-        force_(system_.degrees_of_freedom()),
+        force_(Vector::Zero(system_.degrees_of_freedom())),
         start_velocity_(system_.force_class() == ForceClass::velocity ? system_.degrees_of_freedom() : 0) {}
 
   Status step(double t, double h, VectorRef y) override {
@@ -78,6 +78,13 @@ class SplittingStepper final : public Stepper {
     if (scheme_.last_drift != 0.0) x += (scheme_.last_drift * h) * v;
     has_force_ = scheme_.first_same_as_last;
     return {};
+  }
+
+  void restart(double, ConstVectorRef) override { has_force_ = predicts_ = false; }
+  void serialise(StateArchive& archive) override {
+    archive.visit("force", force_);
+    archive.visit("force is known", has_force_);
+    archive.visit("force predicts", predicts_);
   }
 
  private:
@@ -209,7 +216,7 @@ std::unique_ptr<Integrator> make_splitting(const schemes::SplittingScheme& schem
                   .stages = static_cast<int>(exact.kicks.size()) - (exact.first_same_as_last ? 1 : 0),
                   .is_symplectic = schemes::is_symplectic(schemes::as_nystrom(scheme)),
                   .is_symmetric = schemes::is_symmetric(schemes::as_nystrom(scheme)),
-                  .needs_second_order = true,
+                  .needs = {Capability::second_order},
                   .formula = formula(scheme),
                   .reference = scheme.reference};
   return std::make_unique<FixedStepIntegrator>(

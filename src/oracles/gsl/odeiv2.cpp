@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "core/error.hpp"
+#include "ode/pattern_watch.hpp"
 #include "oracles/foreign_stepper.hpp"
 
 namespace fw::oracles {
@@ -113,6 +114,7 @@ class OdeivStepper final : public ForeignStepper {
                         name_, n, largest_dense_system));
       }
       jacobian_ = system_.jacobian_pattern();
+      watch_ = PatternWatch(system_.pattern_revision());
     }
     later_.resize(n);
     earlier_.resize(n);
@@ -121,16 +123,15 @@ class OdeivStepper final : public ForeignStepper {
     const auto* adaptive = std::get_if<AdaptiveStep>(&control);
     is_adaptive_ = adaptive != nullptr;
     needs_time_derivative_ = name_ == "bsimp";
-    time_scale_ = ivp.t1 - ivp.t0;
+    end_ = ivp.t1;
     maximum_step_ = is_adaptive_ ? adaptive->maximum_step : std::numeric_limits<double>::infinity();
     minimum_step_ = is_adaptive_ ? adaptive->minimum_step : 0.0;
     const double absolute = is_adaptive_ ? adaptive->absolute_tolerance : rounding_tolerance;
     const double relative = is_adaptive_ ? adaptive->relative_tolerance : rounding_tolerance;
-    const double span = ivp.t1 - ivp.t0;
-    step_ = !is_adaptive_                  ? std::get<FixedStep>(control).step
-            : adaptive->initial_step > 0.0 ? adaptive->initial_step
-                                           : first_step(ivp, relative, absolute);
-    step_ = std::min({step_, span, maximum_step_});
+    relative_ = relative;
+    absolute_ = absolute;
+    given_step_ = is_adaptive_ ? adaptive->initial_step : std::get<FixedStep>(control).step;
+    start(ivp.t0, ivp.y0);
     driver_.reset(gsl_odeiv2_driver_alloc_y_new(&gsl_system_, *stepper.type, step_, absolute, relative));
     if (!driver_) throw SystemError(fmt::format("GSL cannot make its stepper: {}", last_message));
   }
@@ -169,20 +170,33 @@ class OdeivStepper final : public ForeignStepper {
     return {};
   }
 
+  void restart(double t, ConstVectorRef y) override {
+    collect_work(work_);
+    start(t, y);
+    gsl_odeiv2_driver_reset_hstart(driver_.get(), step_);
+  }
+
   bool has_dense_output() const override { return false; }
   void interpolate(double, VectorRef) override {}
 
   void collect_work(Work& work) const override { work.rejected_steps += driver_->e->failed_steps; }
 
  private:
+  /// The scale of time and the first step of a run from (t, y).
+  void start(double t, ConstVectorRef y) {
+    time_scale_ = end_ - t;
+    step_ = given_step_ > 0.0 ? given_step_ : first_step(t, y);
+    step_ = std::min({step_, time_scale_, maximum_step_});
+  }
+
   /// GSL takes the first step from its user: h with an error of the tolerance, by the size of f.
-  double first_step(const Ivp& ivp, double relative, double absolute) {
-    system_.rhs(ivp.t0, ivp.y0, later_);
+  double first_step(double t, ConstVectorRef y) {
+    system_.rhs(t, y, later_);
     ++work_.rhs_evaluations;
     const double slope = later_.lpNorm<Eigen::Infinity>();
-    const double size = ivp.y0.lpNorm<Eigen::Infinity>();
-    const double span = ivp.t1 - ivp.t0;
-    const double step = std::sqrt(relative * size + absolute) * (size + 1.0) / (slope + 1e-30);
+    const double size = y.lpNorm<Eigen::Infinity>();
+    const double span = time_scale_;
+    const double step = std::sqrt(relative_ * size + absolute_) * (size + 1.0) / (slope + 1e-30);
     return std::isfinite(step) ? std::clamp(step, 1e-8 * span, 1e-2 * span) : 1e-6 * span;
   }
 
@@ -225,6 +239,9 @@ class OdeivStepper final : public ForeignStepper {
     return run.guarded([&] {
       const Index n = run.system_.size();
       const ConstVectorMap state(y, n);
+      if (run.watch_.has_changed(run.system_.pattern_revision())) {
+        run.jacobian_ = run.system_.jacobian_pattern();
+      }
       run.system_.jacobian(t, state, run.jacobian_);
       ++run.work_.jacobian_evaluations;
       using DenseRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -248,12 +265,15 @@ class OdeivStepper final : public ForeignStepper {
   gsl_odeiv2_system gsl_system_{};
   std::unique_ptr<gsl_odeiv2_driver, DriverDeleter> driver_;
   SparseMatrix jacobian_;
+  PatternWatch watch_{0};  ///< of the Jacobian
   Vector later_, earlier_;
   std::exception_ptr failure_;
   bool is_adaptive_ = false;
   bool met_non_finite_ = false;  ///< in this step
   bool needs_time_derivative_ = false;
-  double time_scale_ = 1.0;
+  double end_ = 0.0, time_scale_ = 1.0;
+  double given_step_ = 0.0;  ///< 0: to be found
+  double relative_ = 0.0, absolute_ = 0.0;
   double step_ = 0.0, maximum_step_ = 0.0, minimum_step_ = 0.0;
 };
 

@@ -128,7 +128,7 @@ std::unique_ptr<Integrator> make_ts_arkimex(const TsArkimexOptions& options) {
                             fmt::format("PETSc TS, additive Runge-Kutta {}{}", type.name,
                                         options.splitting ? ", stiff springs implicit" : ""),
                             type.order);
-  info.needs_force_splitting = info.needs_second_order = options.splitting;
+  if (options.splitting) info.needs = {Capability::second_order, Capability::force_splitting};
   info.is_adaptive = type.name != "ars443";
   info.formula = "y1 = y + h sum_i (b_i f_stiff(Y_i) + b^_i f_soft(Y_i)), f_stiff implicit";
   return make(std::move(info),
@@ -168,7 +168,7 @@ std::unique_ptr<Integrator> make_ts_alpha2(const TsAlpha2Options& options) {
   MethodInfo info = info_of("ts_alpha2", "PETSc TS, generalised-alpha of second-order systems",
                             options.rho_infinity == 1.0 ? 2 : 1);
   info.formula = "M a_(n+alpha_m) = f(t_(n+alpha_f), q_(n+alpha_f), v_(n+alpha_f)), Newmark's q and v";
-  info.needs_second_order = true;
+  info.needs = {Capability::second_order};
   info.carries_more_than_state = true;
   info.is_a_stable = true;
   info.is_l_stable = options.rho_infinity == 0.0;
@@ -193,7 +193,7 @@ std::unique_ptr<Integrator> make_ts_basicsymplectic(const TsBasicSymplecticOptio
   info.is_symplectic = true;
   info.is_symmetric = options.order == 2;
   info.formula = "for each i: v += c_i h f(t, q)/M, q += d_i h v, t += d_i h";
-  info.needs_second_order = info.needs_position_forces = true;
+  info.needs = {Capability::second_order, Capability::position_forces};
   return make(
       std::move(info),
       {.type = TSBASICSYMPLECTIC,

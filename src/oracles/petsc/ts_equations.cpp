@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "oracles/petsc/vector_view.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::oracles {
 
@@ -34,12 +35,6 @@ SparseMatrix with_time_column(const SparseMatrix& A) {
   return wider;
 }
 
-int place_of(const SparseMatrix& A, int row, int column) {
-  const int* begin = A.innerIndexPtr() + A.outerIndexPtr()[column];
-  const int* end = A.innerIndexPtr() + A.outerIndexPtr()[column + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row) - A.innerIndexPtr());
-}
-
 }  // namespace
 
 TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
@@ -49,9 +44,26 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
       work_(work),
       t0_(ivp.t0),
       length_(ivp.t1 - ivp.t0),
-      y0_(ivp.y0) {
+      y0_(ivp.y0),
+      watch_(revision()) {
+  if (form == TsForm::explicit_form || form == TsForm::hamiltonian) return;
+  make_patterns();
+  petsc_matrix_ = std::make_unique<linalg::PetscMatrix>(matrix_, linalg::PetscMatrixType::aij);
+}
+
+std::uint64_t TsEquations::revision() const {
+  return second_order_ != nullptr ? second_order_->pattern_revision() : system_.pattern_revision();
+}
+
+void TsEquations::renew_patterns() {
+  if (!watch_.has_changed(revision())) return;
+  make_patterns();
+  petsc_matrix_->set_pattern(matrix_);
+}
+
+void TsEquations::make_patterns() {
   const Index n = system_.size();
-  switch (form) {
+  switch (form_) {
     case TsForm::explicit_form:
     case TsForm::hamiltonian:
       return;
@@ -61,7 +73,10 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
       break;
     case TsForm::implicit_explicit:
       stiffness_ = damping_ = second_order_->tangent_pattern();
-      [[fallthrough]];
+      blocks_.emplace(stiffness_);
+      jacobian_ = blocks_->pattern();
+      matrix_ = jacobian_;
+      break;
     case TsForm::implicit_form:
       jacobian_ = system_.jacobian_pattern();
       matrix_ = jacobian_;
@@ -71,18 +86,17 @@ TsEquations::TsEquations(const Ivp& ivp, TsForm form, Work& work)
       matrix_ = with_time_column(jacobian_);
       time_derivative_ = Vector::Zero(n);
       other_slope_ = shifted_ = Vector::Zero(n);
-      for (int row = 0; row < n; ++row) time_place_.push_back(place_of(matrix_, row, static_cast<int>(n)));
+      time_place_.clear();
+      for (Index row = 0; row < n; ++row) time_place_.push_back(sparse::slot_of(matrix_, row, n));
       break;
   }
-  for (int column = 0; column < jacobian_.cols(); ++column) {
+  jacobian_place_.clear();
+  for (Index column = 0; column < jacobian_.cols(); ++column) {
     for (SparseMatrix::InnerIterator entry(jacobian_, column); entry; ++entry) {
-      jacobian_place_.push_back(place_of(matrix_, static_cast<int>(entry.row()), column));
+      jacobian_place_.push_back(sparse::slot_of(matrix_, entry.row(), column));
     }
   }
-  for (int column = 0; column < matrix_.cols(); ++column) {
-    diagonal_place_.push_back(place_of(matrix_, column, column));
-  }
-  petsc_matrix_ = std::make_unique<linalg::PetscMatrix>(matrix_, linalg::PetscMatrixType::aij);
+  diagonal_place_ = sparse::diagonal_slots(matrix_);
 }
 
 void TsEquations::attach(TS stepper) {
@@ -186,6 +200,7 @@ void TsEquations::slope(double t, ConstVectorRef y, VectorRef dydt) {
 void TsEquations::assemble(double t, ConstVectorRef y, double sigma) {
   ++work_.jacobian_evaluations;
   ++work_.factorisations;
+  renew_patterns();
   const Index n = system_.size();
   if (form_ == TsForm::implicit_explicit) {
     assemble_stiff(t, y);
@@ -213,29 +228,13 @@ void TsEquations::assemble(double t, ConstVectorRef y, double sigma) {
   petsc_matrix_->set_values(matrix_);
 }
 
-/// ∂(v, M⁻¹ f_stiff)/∂(q, v) into the pattern of the whole Jacobian.
+/// ∂(v, M⁻¹ f_stiff)/∂(q, v).
 void TsEquations::assemble_stiff(double t, ConstVectorRef y) {
   const Index n = y.size() / 2;
   const ForceSplitting& splitting = *second_order_->force_splitting();
   splitting.stiff_stiffness(t, y.head(n), y.tail(n), stiffness_);
   splitting.stiff_damping(t, y.head(n), y.tail(n), damping_);
-  const Vector& mass = second_order_->mass();
-  for (int column = 0; column < jacobian_.cols(); ++column) {
-    const SparseMatrix& part = column < n ? stiffness_ : damping_;
-    const int part_column = column < n ? column : column - static_cast<int>(n);
-    int k = part.outerIndexPtr()[part_column];
-    const int part_end = part.outerIndexPtr()[part_column + 1];
-    for (SparseMatrix::InnerIterator entry(jacobian_, column); entry; ++entry) {
-      if (entry.row() < n) {
-        entry.valueRef() = entry.row() + n == column ? 1.0 : 0.0;
-        continue;
-      }
-      const Index row = entry.row() - n;
-      while (k < part_end && part.innerIndexPtr()[k] < row) ++k;
-      const bool is_there = k < part_end && part.innerIndexPtr()[k] == row;
-      entry.valueRef() = is_there ? part.valuePtr()[k] / mass[row] : 0.0;
-    }
-  }
+  blocks_->fill(stiffness_, damping_, second_order_->mass(), jacobian_);
 }
 
 /// ∂f/∂t ≈ 4/3 Δ(δ) − 1/3 Δ(2δ) with Δ(δ) = (f(t + δ) − f(t − δ))/(2δ); zero is told by the first difference.
@@ -312,6 +311,7 @@ PetscErrorCode TsEquations::second_order_matrix(TS, PetscReal t, Vec q, Vec v, V
     const VectorView position(q), velocity(v);
     ++self.work_.jacobian_evaluations;
     ++self.work_.factorisations;
+    self.renew_patterns();
     self.second_order_->stiffness(t, *position, *velocity, TangentModel::exact, self.stiffness_);
     self.second_order_->damping(t, *position, *velocity, self.damping_);
     self.matrix_.coeffs() = -self.stiffness_.coeffs() - sigma_v * self.damping_.coeffs();

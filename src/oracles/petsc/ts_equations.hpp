@@ -2,10 +2,13 @@
 
 #include <exception>
 #include <memory>
+#include <optional>
 
 #include "core/work.hpp"
 #include "linalg/petsc_matrix.hpp"
+#include "ode/first_order_jacobian.hpp"
 #include "ode/ivp.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::oracles {
 
@@ -47,6 +50,11 @@ class TsEquations {
   static PetscErrorCode force_on_momentum(TS, PetscReal, Vec, Vec, void*);
   static PetscErrorCode state_is_finite(TS, PetscReal, Vec, PetscBool*);
 
+  std::uint64_t revision() const;
+  /// Patterns of the matrices and the places of their entries.
+  void make_patterns();
+  /// Makes them anew, and PETSc's matrix with them, where the system has changed its pattern.
+  void renew_patterns();
   /// f(t, y), or its stiff part.
   void slope(double t, ConstVectorRef y, VectorRef dydt);
   /// σI − J into `matrix_`.
@@ -63,6 +71,8 @@ class TsEquations {
   Work& work_;
   double t0_, length_;
   Vector y0_;
+  PatternWatch watch_;
+  std::optional<FirstOrderJacobian> blocks_;  ///< implicit–explicit form
   SparseMatrix jacobian_, stiffness_, damping_, matrix_;
   std::vector<int> jacobian_place_;  ///< of each entry of the Jacobian in `matrix_`
   std::vector<int> diagonal_place_;

@@ -78,29 +78,38 @@ TsStepper::TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& 
       is_adaptive_(std::holds_alternative<AdaptiveStep>(control)),
       has_monitor_(method.petsc_options.find("monitor") != std::string::npos),
       t_(ivp.t0),
-      text_(method.petsc_options),
-      equations_(ivp, method.form, work) {
-  double first_step = ivp.t1 - ivp.t0;
-  if (const auto* tolerances = std::get_if<AdaptiveStep>(&control)) {
+      method_(method),
+      ivp_(ivp),
+      control_(control),
+      work_(work),
+      text_(method.petsc_options) {
+  create();
+}
+
+void TsStepper::create() {
+  stepper_.reset();  // it has pointers to the equations
+  equations_ = std::make_unique<TsEquations>(ivp_, method_.form, work_);
+  double first_step = ivp_.t1 - ivp_.t0;
+  if (const auto* tolerances = std::get_if<AdaptiveStep>(&control_)) {
     first_step = tolerances->initial_step > 0.0
                      ? tolerances->initial_step
-                     : integrators::initial_step(ivp, *tolerances, integrators::ErrorNorm::root_mean_square,
-                                                 method.order, work);
+                     : integrators::initial_step(ivp_, *tolerances, integrators::ErrorNorm::root_mean_square,
+                                                 method_.order, work_);
   }
   try {
     const PetscSession session(&text_);
     petsc_check(TSCreate(PETSC_COMM_SELF, stepper_.out()));
     petsc_check(TSSetProblemType(stepper_, TS_NONLINEAR));
-    petsc_check(TSSetType(stepper_, method.type.c_str()));
-    equations_.attach(stepper_);
-    petsc_check(TSSetTime(stepper_, ivp.t0));
+    petsc_check(TSSetType(stepper_, method_.type.c_str()));
+    equations_->attach(stepper_);
+    petsc_check(TSSetTime(stepper_, ivp_.t0));
     petsc_check(TSSetTimeStep(stepper_, first_step));
-    petsc_check(TSSetMaxTime(stepper_, ivp.t1));
+    petsc_check(TSSetMaxTime(stepper_, ivp_.t1));
     petsc_check(TSSetMaxSteps(stepper_, PETSC_MAX_INT));
     petsc_check(TSSetErrorIfStepFails(stepper_, PETSC_FALSE));
     TSAdapt adapt = nullptr;
     petsc_check(TSGetAdapt(stepper_, &adapt));
-    if (const auto* tolerances = std::get_if<AdaptiveStep>(&control)) {
+    if (const auto* tolerances = std::get_if<AdaptiveStep>(&control_)) {
       petsc_check(TSSetTolerances(stepper_, tolerances->absolute_tolerance, nullptr,
                                   tolerances->relative_tolerance, nullptr));
       petsc_check(TSAdaptSetType(adapt, TSADAPTBASIC));
@@ -117,11 +126,18 @@ TsStepper::TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& 
       petsc_check(TSSetMaxSNESFailures(stepper_, 1));
     }
     if (is_implicit_) set_solver_defaults();
-    configure(method);
+    configure(method_);
     petsc_check(TSSetUp(stepper_));
   } catch (const PetscFailure& failed) {
     throw InputError(fmt::format("{} cannot be set up: {}", name_, failed.what()));
   }
+}
+
+void TsStepper::restart(double t, ConstVectorRef y) {
+  collect_work(work_);
+  ivp_.t0 = t_ = t;
+  ivp_.y0 = y;
+  create();
 }
 
 void TsStepper::set_solver_defaults() {
@@ -155,7 +171,7 @@ void TsStepper::configure(const TsMethod& method) {
 }
 
 Status TsStepper::advance(double limit, double& t, VectorRef y) {
-  equations_.take_non_finite();
+  equations_->take_non_finite();
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   double reached = t_;
   try {
@@ -168,7 +184,7 @@ Status TsStepper::advance(double limit, double& t, VectorRef y) {
     }
     petsc_check(TSSetTimeStep(stepper_, step));
     petsc_check(TSStep(stepper_));
-    equations_.rethrow();
+    equations_->rethrow();
     petsc_check(TSGetConvergedReason(stepper_, &reason));
     petsc_check(TSGetTime(stepper_, &reached));
     if (is_first_) text_.check_all_used();
@@ -183,7 +199,8 @@ Status TsStepper::advance(double limit, double& t, VectorRef y) {
       reached = limit;
       petsc_check(TSSetTime(stepper_, limit));
     }
-    if (is_adaptive_ && reached - t_ < 1e-12 * std::max(std::abs(t_), step) && equations_.take_non_finite()) {
+    if (is_adaptive_ && reached - t_ < 1e-12 * std::max(std::abs(t_), step) &&
+        equations_->take_non_finite()) {
       return {StatusCode::non_finite,
               fmt::format("{} at t = {:.6g}: the right-hand side is not finite, however small the step",
                           name_, t_)};
@@ -195,11 +212,11 @@ Status TsStepper::advance(double limit, double& t, VectorRef y) {
       petsc_check(TSGetSolution(stepper_, &state));
       petsc_check(TSMonitor(stepper_, count, reached, state));
     }
-    equations_.copy_state(y);
+    equations_->copy_state(y);
   } catch (const PetscFailure& failed) {
-    equations_.rethrow();
+    equations_->rethrow();
     Status status = linalg::status_of(failed);
-    if (equations_.take_non_finite()) status.code = StatusCode::non_finite;
+    if (equations_->take_non_finite()) status.code = StatusCode::non_finite;
     status.message = fmt::format("{} at t = {:.6g}: {}", name_, t_, status.message);
     return status;
   }
@@ -229,7 +246,7 @@ Status TsStepper::failure(TSConvergedReason reason, double t) {
       if (!is_adaptive_) code = StatusCode::linear_solver_failed;
     }
   }
-  if (equations_.take_non_finite()) {
+  if (equations_->take_non_finite()) {
     code = StatusCode::non_finite;
     message += ": the right-hand side is not finite";
   }

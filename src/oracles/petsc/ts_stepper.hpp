@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "oracles/foreign_stepper.hpp"
@@ -28,9 +29,12 @@ class TsStepper final : public ForeignStepper {
   /// The order of TSInterpolate differs from type to type: the loop's Hermite polynomials serve all alike.
   bool has_dense_output() const override { return false; }
   void interpolate(double t, VectorRef out) override;
+  /// A new TS: what each type of it keeps from step to step is its own affair.
+  void restart(double t, ConstVectorRef y) override;
   void collect_work(Work& work) const override;
 
  private:
+  void create();
   void configure(const TsMethod& method);
   void set_solver_defaults();
   Status failure(TSConvergedReason reason, double t);
@@ -41,8 +45,12 @@ class TsStepper final : public ForeignStepper {
   bool is_first_ = true;
   bool has_monitor_;
   double t_;
+  TsMethod method_;
+  Ivp ivp_;  ///< from the last start
+  StepControl control_;
+  Work& work_;
   linalg::PetscOptionText text_;
-  TsEquations equations_;
+  std::unique_ptr<TsEquations> equations_;
   linalg::PetscTs stepper_;
 };
 

@@ -27,7 +27,7 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
   require(ARKStepSetMaxHnilWarns(memory, std::numeric_limits<int>::max()), "ARKStepSetMaxHnilWarns");
   if (implicit_part_) {
     linear_solver_.emplace(implicit_part_->pattern(), y0, context);
-    require(ARKStepSetLinearSolver(memory, linear_solver_->solver.get(), linear_solver_->matrix.get()),
+    require(ARKStepSetLinearSolver(memory, linear_solver_->solver(), linear_solver_->matrix()),
             "ARKStepSetLinearSolver");
     require(ARKStepSetJacFn(memory, jacobian_function), "ARKStepSetJacFn");
   }
@@ -78,6 +78,14 @@ bool ArkStepMemory::raise_stage_tolerance() {
   return true;
 }
 
+void ArkStepMemory::restart(double t, N_Vector y) {
+  collect_work(work_);
+  require(ARKStepReInit(memory_.get(), explicit_part_ ? explicit_function : nullptr,
+                        implicit_part_ ? implicit_function : nullptr, t, y),
+          "ARKStepReInit");
+  if (linear_solver_) linear_solver_->forget();
+}
+
 long ArkStepMemory::last_linear_flag() const {
   long flag = 0;
   if (implicit_part_) ARKStepGetLastLinFlag(memory_.get(), &flag);
@@ -126,7 +134,7 @@ int ArkStepMemory::jacobian_function(sunrealtype t, N_Vector y, N_Vector, SUNMat
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.implicit_part_->jacobian(t, view(y, run.size_));
     ++run.work_.jacobian_evaluations;
-    SparseDirectSolver::copy(jacobian, J);
+    run.linear_solver_->copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

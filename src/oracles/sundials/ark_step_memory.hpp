@@ -40,6 +40,10 @@ class ArkStepMemory {
   /// forces), ten times the tolerance for the rest of the run, up to 1e-10; false where that was reached.
   bool raise_stage_tolerance();
 
+  /// ARKStepReInit at (t, y): no history, a first step of ARKODE's choice. What ARKODE has counted goes to
+  /// the work of the run before.
+  void restart(double t, N_Vector y);
+
   long last_linear_flag() const;
   void collect_work(Work& work) const;
 

@@ -25,6 +25,7 @@ class ArkodeStepper final : public ForeignStepper {
                 const StepControl& control, Work& work)
       : time_(ivp.t0),
         is_adaptive_(std::holds_alternative<AdaptiveStep>(control)),
+        accuracy_{options.newton_tolerance, options.newton_coefficient},
         check_stall_(ivp.t0),
         state_(ivp.y0),
         dense_(ivp.y0.size()),
@@ -33,11 +34,10 @@ class ArkodeStepper final : public ForeignStepper {
         dense_vector_(wrap_eigen_vector(dense_, context_.get())),
         ark_(ivp.t0, state_vector_.get(), explicit_part(tables, *ivp.system),
              implicit_part(tables, *ivp.system), tables, report_, work, context_.get()) {
-    const StageAccuracy accuracy{options.newton_tolerance, options.newton_coefficient};
     if (is_adaptive_) {
-      ark_.choose_steps(std::get<AdaptiveStep>(control), accuracy);
+      ark_.choose_steps(std::get<AdaptiveStep>(control), accuracy_);
     } else {
-      ark_.take_constant_steps(ivp.y0.lpNorm<Eigen::Infinity>(), accuracy);
+      ark_.take_constant_steps(ivp.y0.lpNorm<Eigen::Infinity>(), accuracy_);
     }
   }
 
@@ -66,6 +66,15 @@ class ArkodeStepper final : public ForeignStepper {
     return {};
   }
 
+  void restart(double t, ConstVectorRef y) override {
+    state_ = y;
+    time_ = t;
+    ark_.restart(t, state_vector_.get());
+    if (!is_adaptive_) ark_.take_constant_steps(y.lpNorm<Eigen::Infinity>(), accuracy_);
+    report_ = {};
+    check_stall_ = StallCheck(t);
+  }
+
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override {
     const int flag = ARKStepGetDky(ark_.get(), t, 0, dense_vector_.get());
@@ -89,6 +98,7 @@ class ArkodeStepper final : public ForeignStepper {
 
   double time_;  ///< as ARKODE has it
   bool is_adaptive_;
+  StageAccuracy accuracy_;
   RunReport report_;
   StallCheck check_stall_;
   Vector state_, dense_;
@@ -118,8 +128,8 @@ std::unique_ptr<Integrator> make_arkode(std::string name, std::string title, Ark
                   .is_explicit = !tables.implicit_part,
                   .is_adaptive = tables.embedded_order > 0,
                   .embedded_order = tables.embedded_order,
-                  .needs_second_order = is_additive,
-                  .needs_force_splitting = is_additive,
+                  .needs = is_additive ? Capabilities{Capability::second_order, Capability::force_splitting}
+                                       : Capabilities{},
                   .formula = is_additive
                                  ? "y_i = y + h sum_{j<=i} a_ij f_stiff(y_j) + h sum_{j<i} e_ij f_soft(y_j)"
                              : tables.implicit_part ? "y_i = y + h sum_{j<=i} a_ij f(t + c_j h, y_j)"

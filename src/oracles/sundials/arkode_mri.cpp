@@ -47,6 +47,7 @@ class MriStepper final : public ForeignStepper {
  public:
   MriStepper(const MriOptions& options, const ArkodeTables& tables, const Ivp& ivp, Work& work)
       : inner_steps_(options.inner_steps),
+        inner_tolerance_(options.inner_tolerance),
         time_(ivp.t0),
         state_(ivp.y0),
         dense_(ivp.y0.size()),
@@ -60,14 +61,7 @@ class MriStepper final : public ForeignStepper {
         memory_(own<MriStepPointer>(MRIStepCreate(evaluate_slow_part, nullptr, ivp.t0, state_vector_.get(),
                                                   inner_stepper_.get(), context_.get()),
                                     "MRIStepCreate")) {
-    const double scale = std::max(ivp.y0.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
-    if (inner_steps_ > 0) {
-      inner_.take_constant_steps(scale, {});
-    } else {
-      inner_.choose_steps({.relative_tolerance = options.inner_tolerance,
-                           .absolute_tolerance = options.inner_tolerance * scale},
-                          {});
-    }
+    set_inner_tolerances(ivp.y0);
     void* memory = memory_.get();
     require(MRIStepSetErrHandlerFn(memory, keep_message, &report_), "MRIStepSetErrHandlerFn");
     require(MRIStepSetUserData(memory, &slow_), "MRIStepSetUserData");
@@ -94,6 +88,16 @@ class MriStepper final : public ForeignStepper {
     return {};
   }
 
+  void restart(double t, ConstVectorRef y) override {
+    state_ = y;
+    time_ = t;
+    inner_.restart(t, state_vector_.get());
+    set_inner_tolerances(y);
+    require(MRIStepReInit(memory_.get(), evaluate_slow_part, nullptr, t, state_vector_.get()),
+            "MRIStepReInit");
+    report_ = {};
+  }
+
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override {
     const int flag = MRIStepGetDky(memory_.get(), t, 0, dense_vector_.get());
@@ -104,6 +108,15 @@ class MriStepper final : public ForeignStepper {
   void collect_work(Work& work) const override { inner_.collect_work(work); }
 
  private:
+  void set_inner_tolerances(ConstVectorRef y) {
+    const double scale = std::max(y.lpNorm<Eigen::Infinity>(), std::numeric_limits<double>::min());
+    if (inner_steps_ > 0) {
+      inner_.take_constant_steps(scale, {});
+    } else {
+      inner_.choose_steps(
+          {.relative_tolerance = inner_tolerance_, .absolute_tolerance = inner_tolerance_ * scale}, {});
+    }
+  }
   static std::unique_ptr<RightHandPart> fast_part(const Ivp& ivp, bool is_wanted) {
     return is_wanted ? make_stiff_right_hand_part(*ivp.system->second_order()) : nullptr;
   }
@@ -127,6 +140,7 @@ class MriStepper final : public ForeignStepper {
   }
 
   int inner_steps_;
+  double inner_tolerance_;
   double time_;  ///< as ARKODE has it
   RunReport report_;
   Vector state_, dense_;
@@ -161,8 +175,7 @@ std::unique_ptr<Integrator> make_arkode_mri(const MriOptions& options) {
       .order_with_velocity_forces = coupling->q,
       .stages = coupling->stages - 1,
       .is_explicit = !options.inner_is_implicit,
-      .needs_second_order = true,
-      .needs_force_splitting = true,
+      .needs = {Capability::second_order, Capability::force_splitting},
       .formula = "v' = f_stiff(t, v) + sum_j w_ij((t - t_n)/h) f_soft(y_j) between the stages",
       .reference = "[Sandu 2019; Reynolds et al. 2023]"};
   return std::make_unique<OracleIntegrator>(

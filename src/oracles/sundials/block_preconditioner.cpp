@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sparse/sparse_slots.hpp"
+
 namespace fw::oracles {
 
 namespace {
@@ -26,12 +28,8 @@ auto block(const std::vector<double>& values, Index i) {
 std::vector<int> find_blocks(const SparseMatrix& matrix, Index size) {
   std::vector<int> places;
   for (Index j = 0; j < matrix.cols(); ++j) {
-    const int* begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j];
-    const int* end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1];
     for (Index i = j / size * size; i < (j / size + 1) * size; ++i) {
-      const int* found = std::lower_bound(begin, end, static_cast<int>(i));
-      const bool is_stored = found != end && *found == static_cast<int>(i);
-      places.push_back(is_stored ? static_cast<int>(found - matrix.innerIndexPtr()) : -1);
+      places.push_back(sparse::find_slot(matrix, i, j));
     }
   }
   return places;
@@ -47,11 +45,21 @@ BlockPreconditioner::BlockPreconditioner(const OdeSystem& system)
     : system_(system),
       second_order_(system.second_order()),
       block_size_(block_size_for(second_order_)),
-      matrix_(second_order_ != nullptr ? second_order_->tangent_pattern() : system.jacobian_pattern()),
-      places_(find_blocks(matrix_, block_size_)),
-      stiffness_(places_.size()),
-      damping_(second_order_ != nullptr ? places_.size() : 0),
-      inverses_(places_.size()) {}
+      watch_(revision()) {
+  make_pattern();
+  stiffness_.resize(places_.size());
+  damping_.resize(second_order_ != nullptr ? places_.size() : 0);
+  inverses_.resize(places_.size());
+}
+
+std::uint64_t BlockPreconditioner::revision() const {
+  return second_order_ != nullptr ? second_order_->pattern_revision() : system_.pattern_revision();
+}
+
+void BlockPreconditioner::make_pattern() {
+  matrix_ = second_order_ != nullptr ? second_order_->tangent_pattern() : system_.jacobian_pattern();
+  places_ = find_blocks(matrix_, block_size_);
+}
 
 Index BlockPreconditioner::block_count() const {
   return matrix_.cols() / block_size_;
@@ -71,6 +79,7 @@ void BlockPreconditioner::take_blocks(const SparseMatrix& matrix, std::vector<do
 
 void BlockPreconditioner::evaluate(double t, ConstVectorRef y, Work& work) {
   ++work.jacobian_evaluations;
+  if (watch_.has_changed(revision())) make_pattern();
   if (second_order_ == nullptr) {
     system_.jacobian(t, y, matrix_);
     take_blocks(matrix_, stiffness_);

@@ -4,6 +4,7 @@
 
 #include "core/work.hpp"
 #include "ode/ode_system.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::oracles {
 
@@ -32,6 +33,8 @@ class BlockPreconditioner {
 
  private:
   Index block_count() const;
+  std::uint64_t revision() const;
+  void make_pattern();
   void take_blocks(const SparseMatrix& matrix, std::vector<double>& blocks) const;
   template <int Size>
   bool factorise_blocks();
@@ -41,6 +44,7 @@ class BlockPreconditioner {
   const OdeSystem& system_;
   const SecondOrderSystem* second_order_;
   Index block_size_;
+  PatternWatch watch_;
   double gamma_ = 0.0;
   SparseMatrix matrix_;            ///< room for K and D, or for J
   std::vector<int> places_;        ///< where in its values the entries of the blocks are, −1: not stored

@@ -1,5 +1,6 @@
 #include "oracles/sundials/constrained_form.hpp"
 
+#include "ode/pattern_watch.hpp"
 #include "oracles/sundials/sparse_assembly.hpp"
 
 namespace fw::oracles::detail {
@@ -17,8 +18,9 @@ class ConstrainedForm final : public DaeForm {
         held_(std::move(held)),
         n_(system.degrees_of_freedom()),
         m_(constraints.size()),
+        watch_(system.pattern_revision()),
         stiffness_(system.tangent_pattern()),
-        damping_(system.tangent_pattern()),
+        damping_(stiffness_),
         jacobian_(make_assembly()) {}
 
   Index size() const override { return 2 * n_ + 2 * m_; }
@@ -45,6 +47,10 @@ class ConstrainedForm final : public DaeForm {
   const SparseMatrix& pattern() const override { return jacobian_.matrix(); }
 
   const SparseMatrix& jacobian(double t, double cj, ConstVectorRef y) override {
+    if (watch_.has_changed(system_.pattern_revision())) {
+      stiffness_ = damping_ = system_.tangent_pattern();
+      jacobian_ = make_assembly();
+    }
     const auto q = y.head(n_), v = y.segment(n_, n_);
     system_.stiffness(t, q, v, TangentModel::exact, stiffness_);
     system_.damping(t, q, v, damping_);
@@ -95,6 +101,7 @@ class ConstrainedForm final : public DaeForm {
   const DistanceConstraints& constraints_;
   ConstraintExcess held_;
   Index n_, m_;
+  PatternWatch watch_;
   SparseMatrix stiffness_, damping_;
   SparseAssembly jacobian_;
 };

@@ -45,6 +45,7 @@ class ConstrainedStepper final : public ForeignStepper {
       : constraints_(constraints),
         options_(options),
         result_(result),
+        end_(ivp.t1),
         // From ẏ = 0 and λ = μ = 0 the first correction of IDACalcIC is an infinitesimal step of the
         // linearised equations: it satisfies g = 0 and G v = 0 at its end too, and thereby what is hidden in
         // them, G v̇ + G(v) v = 0.
@@ -81,6 +82,11 @@ class ConstrainedStepper final : public ForeignStepper {
     show(t);
     return {};
   }
+  void restart(double t, ConstVectorRef y) override {
+    ida_.restart(t, with_multipliers(y, constraints_.size()),
+                 Vector::Zero(y.size() + 2 * constraints_.size()));
+    start_ = ida_.correct_initial_values(end_);
+  }
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { ida_.interpolate(t, out); }
   void collect_work(Work& work) const override { ida_.collect_work(work); }
@@ -100,7 +106,8 @@ class ConstrainedStepper final : public ForeignStepper {
   const DistanceConstraints& constraints_;
   const ConstrainedOptions& options_;
   ConstrainedSolution& result_;
-  Status start_;
+  double end_;
+  Status start_;  ///< of the last start
   IdaMemory ida_;
 };
 
@@ -115,7 +122,7 @@ MethodInfo constrained_info() {
           .is_multistep = true,
           .is_adaptive = true,
           .has_fixed_step = false,
-          .needs_second_order = true,
+          .needs = {Capability::second_order},
           .formula = "M q' = M v + G^T mu, M v' = f + G^T lambda, g(q) = 0, G v = 0",
           .reference = "[Gear, Gupta, Leimkuhler 1985; Hindmarsh et al. 2005]"};
 }

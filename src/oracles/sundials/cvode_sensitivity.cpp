@@ -52,6 +52,7 @@ class SessionWithSensitivities final : public CvodeSession {
       : CvodeSession(options.formula, options.cvode, ivp, tolerances, work),
         springs_(integrators::require_mass_spring_system(*ivp.system, "CVODES forward sensitivities")),
         parameters_(parameters),
+        corrector_(options.corrector == SensitivityCorrector::simultaneous ? CV_SIMULTANEOUS : CV_STAGGERED),
         force_(springs_.degrees_of_freedom()) {
     std::vector<N_Vector> start;
     for (const SpringParameterGroup& group : parameters_) {
@@ -61,13 +62,21 @@ class SessionWithSensitivities final : public CvodeSession {
       start.push_back(sensitivities_.back().get());
       N_VConst(0.0, start.back());
     }
-    const int corrector =
-        options.corrector == SensitivityCorrector::simultaneous ? CV_SIMULTANEOUS : CV_STAGGERED;
-    require(CVodeSensInit1(memory(), static_cast<int>(start.size()), corrector, evaluate, start.data()),
+    require(CVodeSensInit1(memory(), static_cast<int>(start.size()), corrector_, evaluate, start.data()),
             "CVodeSensInit1");
     require(CVodeSetSensParams(memory(), nullptr, scales_.data(), nullptr), "CVodeSetSensParams");
     require(CVodeSensEEtolerances(memory()), "CVodeSensEEtolerances");
     require(CVodeSetSensErrCon(memory(), options.error_control ? SUNTRUE : SUNFALSE), "CVodeSetSensErrCon");
+  }
+
+  /// CVODES starts anew from (t, y); the sensitivities go on from their values.
+  void restart_with_sensitivities(double t, ConstVectorRef y) {
+    std::vector<N_Vector> values;
+    for (const VectorPointer& vector : sensitivities_) values.push_back(vector.get());
+    double reached = 0.0;
+    require(CVodeGetSens(memory(), &reached, values.data()), "CVodeGetSens");
+    restart(t, y);
+    require(CVodeSensReInit(memory(), corrector_, values.data()), "CVodeSensReInit");
   }
 
   /// ∂y/∂p_k at the end of the last step.
@@ -104,6 +113,7 @@ class SessionWithSensitivities final : public CvodeSession {
 
   const mechanics::MassSpringSystem& springs_;
   const std::vector<SpringParameterGroup>& parameters_;
+  int corrector_;
   std::vector<double> scales_;  ///< kept by CVODES
   std::vector<VectorPointer> sensitivities_;
   Vector force_;
@@ -125,6 +135,7 @@ class SensitivityStepper final : public ForeignStepper {
   }
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
+  void restart(double t, ConstVectorRef y) override { session_.restart_with_sensitivities(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }
 
  private:

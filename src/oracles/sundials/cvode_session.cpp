@@ -98,9 +98,9 @@ CvodeSession::CvodeSession(CvodeFormula formula, const CvodeOptions& options, co
 void CvodeSession::attach_linear_solver(const CvodeOptions& options) {
   if (options.linear_solver == CvodeLinearSolver::klu) {
     jacobian_ = system_.jacobian_pattern();
+    watch_.emplace(system_.pattern_revision());
     direct_.emplace(jacobian_, y_.get(), context_.get());
-    require(CVodeSetLinearSolver(memory(), direct_->solver.get(), direct_->matrix.get()),
-            "CVodeSetLinearSolver");
+    require(CVodeSetLinearSolver(memory(), direct_->solver(), direct_->matrix()), "CVodeSetLinearSolver");
     require(CVodeSetJacFn(memory(), jacobian), "CVodeSetJacFn");
     return;
   }
@@ -121,9 +121,10 @@ int CvodeSession::evaluate_rhs(double t, N_Vector y, N_Vector slope) {
 }
 
 int CvodeSession::evaluate_jacobian(double t, N_Vector y, SUNMatrix J) {
+  if (watch_->has_changed(system_.pattern_revision())) jacobian_ = system_.jacobian_pattern();
   system_.jacobian(t, view(y, state_.size()), jacobian_);
   ++work_.jacobian_evaluations;
-  SparseDirectSolver::copy(jacobian_, J);
+  direct_->copy(jacobian_, J);
   // KLU's factors of a matrix that is not finite look like success.
   return jacobian_.coeffs().allFinite() ? 0 : 1;
 }
@@ -170,6 +171,16 @@ Status CvodeSession::advance(double limit, double& t, VectorRef y, CvodeEvent* e
 void CvodeSession::interpolate(double t, VectorRef out) {
   require(CVodeGetDky(memory(), t, 0, dense_.get()), "CVodeGetDky");
   out = view(dense_.get(), state_.size());
+}
+
+void CvodeSession::restart(double t, ConstVectorRef y) {
+  collect_work(work_);
+  state_ = y;
+  require(CVodeReInit(memory(), t, y_.get()), "CVodeReInit");
+  if (direct_) direct_->forget();
+  require(CVodeSetStopTime(memory(), stop_time_), "CVodeSetStopTime");
+  steps_without_progress_ = 0;
+  message_.clear();
 }
 
 void CvodeSession::collect_work(Work& work) const {

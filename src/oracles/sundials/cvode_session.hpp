@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "ode/pattern_watch.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/block_preconditioner.hpp"
 #include "oracles/sundials/callback_guard.hpp"
@@ -43,6 +44,10 @@ class CvodeSession {
   /// y(t) in the last step.
   void interpolate(double t, VectorRef out);
 
+  /// CVodeReInit at (t, y): order 1, a first step of CVODE's choice, no history. What CVODE has counted goes
+  /// to the work of the run before.
+  void restart(double t, ConstVectorRef y);
+
   /// Adds CVODE's own counters.
   void collect_work(Work& work) const;
 
@@ -66,6 +71,7 @@ class CvodeSession {
   double stop_time_;
   int steps_without_progress_ = 0;
   SparseMatrix jacobian_;
+  std::optional<PatternWatch> watch_;  ///< of the Jacobian
   std::optional<BlockPreconditioner> preconditioner_;
 
   ContextPointer context_;
@@ -89,6 +95,7 @@ class CvodeStepper final : public ForeignStepper {
   Status advance(double limit, double& t, VectorRef y) override { return session_.advance(limit, t, y); }
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
+  void restart(double t, ConstVectorRef y) override { session_.restart(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }
 
  private:

@@ -1,6 +1,8 @@
 #include "oracles/sundials/dae_form.hpp"
 
-#include "oracles/sundials/sparse_assembly.hpp"
+#include "ode/first_order_jacobian.hpp"
+#include "ode/pattern_watch.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::oracles::detail {
 
@@ -8,7 +10,8 @@ namespace {
 
 class FirstOrderForm final : public DaeForm {
  public:
-  explicit FirstOrderForm(const OdeSystem& system) : system_(system), jacobian_(system.jacobian_pattern()) {}
+  explicit FirstOrderForm(const OdeSystem& system)
+      : system_(system), watch_(system.pattern_revision()), jacobian_(system.jacobian_pattern()) {}
 
   Index size() const override { return system_.size(); }
   void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) override {
@@ -17,14 +20,16 @@ class FirstOrderForm final : public DaeForm {
   }
   const SparseMatrix& pattern() const override { return jacobian_; }
   const SparseMatrix& jacobian(double t, double cj, ConstVectorRef y) override {
+    if (watch_.has_changed(system_.pattern_revision())) jacobian_ = system_.jacobian_pattern();
     system_.jacobian(t, y, jacobian_);
     jacobian_.coeffs() = -jacobian_.coeffs();
-    for (Index i = 0; i < size(); ++i) jacobian_.coeffRef(i, i) += cj;  // the diagonal is in the pattern
+    sparse::add_to_diagonal(jacobian_, cj);
     return jacobian_;
   }
 
  private:
   const OdeSystem& system_;
+  PatternWatch watch_;
   SparseMatrix jacobian_;
 };
 
@@ -32,9 +37,12 @@ class SecondOrderForm final : public DaeForm {
  public:
   explicit SecondOrderForm(const SecondOrderSystem& system)
       : system_(system),
+        watch_(system.pattern_revision()),
         stiffness_(system.tangent_pattern()),
-        damping_(system.tangent_pattern()),
-        jacobian_(assembly(system.degrees_of_freedom(), stiffness_)) {}
+        damping_(stiffness_),
+        blocks_(stiffness_),
+        jacobian_(blocks_.pattern()),
+        diagonal_(sparse::diagonal_slots(stiffness_)) {}
 
   Index size() const override { return 2 * system_.degrees_of_freedom(); }
   void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) override {
@@ -43,40 +51,40 @@ class SecondOrderForm final : public DaeForm {
     system_.force(t, y.head(n), y.tail(n), residual.tail(n));
     residual.tail(n) = system_.mass().cwiseProduct(dydt.tail(n)) - residual.tail(n);
   }
-  const SparseMatrix& pattern() const override { return jacobian_.matrix(); }
+  const SparseMatrix& pattern() const override { return jacobian_; }
   /// [[cj I, −I], [−K, cj M − D]]
   const SparseMatrix& jacobian(double t, double cj, ConstVectorRef y) override {
+    if (watch_.has_changed(system_.pattern_revision())) make_pattern();
     const Index n = system_.degrees_of_freedom();
     system_.stiffness(t, y.head(n), y.tail(n), TangentModel::exact, stiffness_);
     system_.damping(t, y.head(n), y.tail(n), damping_);
-    jacobian_.clear();
-    for (Index i = 0; i < n; ++i) {
-      jacobian_.add(cj);
-      jacobian_.add(-1.0);
-      jacobian_.add(cj * system_.mass()[i]);
+    double* values = jacobian_.valuePtr();
+    for (int c = 0; c < static_cast<int>(n); ++c) {
+      values[blocks_.diagonal(c)] = cj;
+      values[blocks_.unit(c)] = -1.0;
+      for (int k = stiffness_.outerIndexPtr()[c]; k < stiffness_.outerIndexPtr()[c + 1]; ++k) {
+        values[blocks_.stiffness(k, c)] = 0.0 - stiffness_.valuePtr()[k];  // no negative zeros
+        values[blocks_.damping(k, c)] = 0.0 - damping_.valuePtr()[k];
+      }
+      values[blocks_.damping(diagonal_[static_cast<std::size_t>(c)], c)] += cj * system_.mass()[c];
     }
-    for_each_entry(stiffness_, [&](Index, Index, double value) { jacobian_.add(-value); });
-    for_each_entry(damping_, [&](Index, Index, double value) { jacobian_.add(-value); });
-    return jacobian_.matrix();
+    return jacobian_;
   }
 
  private:
-  static SparseAssembly assembly(Index n, const SparseMatrix& tangent) {
-    std::vector<std::pair<Index, Index>> places;
-    for (Index i = 0; i < n; ++i) {
-      places.emplace_back(i, i);
-      places.emplace_back(i, n + i);
-      places.emplace_back(n + i, n + i);
-    }
-    for (const Index column : {Index{0}, n}) {
-      for_each_entry(tangent, [&](Index i, Index j, double) { places.emplace_back(n + i, column + j); });
-    }
-    return {2 * n, 2 * n, places};
+  void make_pattern() {
+    stiffness_ = damping_ = system_.tangent_pattern();
+    blocks_ = FirstOrderJacobian(stiffness_);
+    jacobian_ = blocks_.pattern();
+    diagonal_ = sparse::diagonal_slots(stiffness_);
   }
 
   const SecondOrderSystem& system_;
+  PatternWatch watch_;
   SparseMatrix stiffness_, damping_;
-  SparseAssembly jacobian_;
+  FirstOrderJacobian blocks_;  ///< has the pattern of this Jacobian
+  SparseMatrix jacobian_;
+  std::vector<int> diagonal_;  ///< slots in the tangents
 };
 
 }  // namespace

@@ -17,10 +17,11 @@ class DaeForm {
   /// residual = F(t, y, ẏ).
   virtual void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) = 0;
 
-  /// A matrix with the pattern of the Jacobian.
+  /// A matrix with the pattern of the Jacobian at the start; `jacobian` takes another one when the system's
+  /// `pattern_revision` has changed.
   virtual const SparseMatrix& pattern() const = 0;
 
-  /// cj ∂F/∂ẏ + ∂F/∂y, of `pattern()`.
+  /// cj ∂F/∂ẏ + ∂F/∂y.
   virtual const SparseMatrix& jacobian(double t, double cj, ConstVectorRef y) = 0;
 };
 

@@ -12,26 +12,30 @@ using namespace detail;
 class IdaStepper final : public ForeignStepper {
  public:
   IdaStepper(const Ivp& ivp, const AdaptiveStep& tolerances, Work& work)
-      : ida_(make_residual_form(*ivp.system), ivp.t0, ivp.t1, ivp.y0, initial_slope(ivp, work), tolerances,
-             work) {}
+      : system_(*ivp.system),
+        work_(work),
+        ida_(make_residual_form(system_), ivp.t0, ivp.t1, ivp.y0, slope(ivp.t0, ivp.y0), tolerances, work) {}
 
   Status advance(double limit, double& t, VectorRef y) override {
     Status status = ida_.advance(limit, t);
     if (status.ok()) y = ida_.state();
     return status;
   }
+  void restart(double t, ConstVectorRef y) override { ida_.restart(t, y, slope(t, y)); }
   bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { ida_.interpolate(t, out); }
   void collect_work(Work& work) const override { ida_.collect_work(work); }
 
  private:
-  static Vector initial_slope(const Ivp& ivp, Work& work) {
-    Vector slope(ivp.y0.size());
-    ivp.system->rhs(ivp.t0, ivp.y0, slope);
-    ++work.rhs_evaluations;
+  Vector slope(double t, ConstVectorRef y) {
+    Vector slope(y.size());
+    system_.rhs(t, y, slope);
+    ++work_.rhs_evaluations;
     return slope;
   }
 
+  const OdeSystem& system_;
+  Work& work_;
   IdaMemory ida_;
 };
 

@@ -8,6 +8,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
                      const Vector& dydt0, const AdaptiveStep& tolerances, Work& work)
     : form_(std::move(form)),
       start_(t0),
+      end_(t1),
       relative_tolerance_(tolerances.relative_tolerance),
       absolute_tolerance_(tolerances.absolute_tolerance),
       work_(work),
@@ -29,8 +30,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
   require(IDASetUserData(memory, this), "IDASetUserData");
   require(IDASStolerances(memory, tolerances.relative_tolerance, tolerances.absolute_tolerance),
           "IDASStolerances");
-  require(IDASetLinearSolver(memory, linear_solver_.solver.get(), linear_solver_.matrix.get()),
-          "IDASetLinearSolver");
+  require(IDASetLinearSolver(memory, linear_solver_.solver(), linear_solver_.matrix()), "IDASetLinearSolver");
   require(IDASetJacFn(memory, jacobian_function), "IDASetJacFn");
   require(IDASetMaxNumSteps(memory, -1), "IDASetMaxNumSteps");
   require(IDASetStopTime(memory, t1), "IDASetStopTime");
@@ -88,6 +88,18 @@ Status IdaMemory::advance(double limit, double& t) {
   return check_stall_("IDA", t, report_);
 }
 
+void IdaMemory::restart(double t, ConstVectorRef y, ConstVectorRef dydt) {
+  collect_work(work_);
+  start_ = t;
+  state_ = y;
+  slope_ = dydt;
+  require(IDAReInit(get(), t, state_vector_.get(), slope_vector_.get()), "IDAReInit");
+  linear_solver_.forget();
+  require(IDASetStopTime(get(), end_), "IDASetStopTime");
+  report_ = {};
+  check_stall_ = StallCheck(t);
+}
+
 void IdaMemory::interpolate(double t, VectorRef out) {
   require(IDAGetDky(get(), t, 0, dense_vector_.get()), "IDAGetDky");
   out = dense_.head(out.size());
@@ -131,7 +143,7 @@ int IdaMemory::jacobian_function(sunrealtype t, sunrealtype cj, N_Vector y, N_Ve
   return run.report_.guard.call([&] {
     const SparseMatrix& jacobian = run.form_->jacobian(t, cj, view(y, run.form_->size()));
     ++run.work_.jacobian_evaluations;
-    SparseDirectSolver::copy(jacobian, J);
+    run.linear_solver_.copy(jacobian, J);
     if (jacobian.coeffs().allFinite()) return 0;
     run.report_.met_non_finite = true;
     return 1;

@@ -38,6 +38,9 @@ class IdaMemory {
   /// One step that does not pass `limit`.
   Status advance(double limit, double& t);
 
+  /// IDAReInit at (t, y, ẏ): order 1, no history. What IDA has counted goes to the work of the run before.
+  void restart(double t, ConstVectorRef y, ConstVectorRef dydt);
+
   void interpolate(double t, VectorRef out);
   void collect_work(Work& work) const;
 
@@ -49,7 +52,7 @@ class IdaMemory {
   Status failure(int flag, double t) const;
 
   std::unique_ptr<DaeForm> form_;
-  double start_, relative_tolerance_, absolute_tolerance_;
+  double start_, end_, relative_tolerance_, absolute_tolerance_;
   Vector scale_per_step_;
   Work& work_;
   RunReport report_;

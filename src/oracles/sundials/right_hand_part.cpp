@@ -2,7 +2,8 @@
 
 #include <stdexcept>
 
-#include "oracles/sundials/sparse_assembly.hpp"
+#include "ode/first_order_jacobian.hpp"
+#include "ode/pattern_watch.hpp"
 
 namespace fw::oracles::detail {
 
@@ -10,11 +11,12 @@ namespace {
 
 class WholeRightHandSide final : public RightHandPart {
  public:
-  explicit WholeRightHandSide(const OdeSystem& system) : system_(system) {}
+  explicit WholeRightHandSide(const OdeSystem& system) : system_(system), watch_(system.pattern_revision()) {}
 
   void evaluate(double t, ConstVectorRef y, VectorRef dydt) override { system_.rhs(t, y, dydt); }
   const SparseMatrix& pattern() const override {
-    if (jacobian_.size() == 0) jacobian_ = system_.jacobian_pattern();
+    const bool is_new = watch_.has_changed(system_.pattern_revision());
+    if (jacobian_.size() == 0 || is_new) jacobian_ = system_.jacobian_pattern();
     return jacobian_;
   }
   const SparseMatrix& jacobian(double t, ConstVectorRef y) override {
@@ -25,6 +27,7 @@ class WholeRightHandSide final : public RightHandPart {
 
  private:
   const OdeSystem& system_;
+  mutable PatternWatch watch_;
   mutable SparseMatrix jacobian_;  ///< made when it is first asked for: explicit methods need none
 };
 
@@ -32,9 +35,11 @@ class StiffPart final : public RightHandPart {
  public:
   explicit StiffPart(const SecondOrderSystem& system)
       : system_(system),
+        watch_(system.pattern_revision()),
         stiffness_(system.tangent_pattern()),
-        damping_(system.tangent_pattern()),
-        jacobian_(assembly(system.degrees_of_freedom(), stiffness_)) {}
+        damping_(stiffness_),
+        blocks_(stiffness_),
+        jacobian_(blocks_.pattern()) {}
 
   void evaluate(double t, ConstVectorRef y, VectorRef dydt) override {
     const Index n = system_.degrees_of_freedom();
@@ -42,40 +47,28 @@ class StiffPart final : public RightHandPart {
     system_.force_splitting()->stiff_force(t, y.head(n), y.tail(n), dydt.tail(n));
     dydt.tail(n).array() /= system_.mass().array();
   }
-  const SparseMatrix& pattern() const override { return jacobian_.matrix(); }
+  const SparseMatrix& pattern() const override { return jacobian_; }
   /// [[0, I], [M⁻¹K, M⁻¹D]]
   const SparseMatrix& jacobian(double t, ConstVectorRef y) override {
+    if (watch_.has_changed(system_.pattern_revision())) {
+      stiffness_ = damping_ = system_.tangent_pattern();
+      blocks_ = FirstOrderJacobian(stiffness_);
+      jacobian_ = blocks_.pattern();
+    }
     const Index n = system_.degrees_of_freedom();
     const ForceSplitting& splitting = *system_.force_splitting();
     splitting.stiff_stiffness(t, y.head(n), y.tail(n), stiffness_);
     splitting.stiff_damping(t, y.head(n), y.tail(n), damping_);
-    jacobian_.clear();
-    for (Index i = 0; i < n; ++i) {
-      jacobian_.add(0.0);
-      jacobian_.add(1.0);
-    }
-    const Vector& mass = system_.mass();
-    for_each_entry(stiffness_, [&](Index i, Index, double value) { jacobian_.add(value / mass[i]); });
-    for_each_entry(damping_, [&](Index i, Index, double value) { jacobian_.add(value / mass[i]); });
-    return jacobian_.matrix();
+    blocks_.fill(stiffness_, damping_, system_.mass(), jacobian_);
+    return jacobian_;
   }
 
  private:
-  static SparseAssembly assembly(Index n, const SparseMatrix& tangent) {
-    std::vector<std::pair<Index, Index>> places;
-    for (Index i = 0; i < n; ++i) {
-      places.emplace_back(i, i);
-      places.emplace_back(i, n + i);
-    }
-    for (const Index column : {Index{0}, n}) {
-      for_each_entry(tangent, [&](Index i, Index j, double) { places.emplace_back(n + i, column + j); });
-    }
-    return {2 * n, 2 * n, places};
-  }
-
   const SecondOrderSystem& system_;
+  PatternWatch watch_;
   SparseMatrix stiffness_, damping_;
-  SparseAssembly jacobian_;
+  FirstOrderJacobian blocks_;
+  SparseMatrix jacobian_;
 };
 
 class SoftPart final : public RightHandPart {

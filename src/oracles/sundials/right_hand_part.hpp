@@ -15,10 +15,11 @@ class RightHandPart {
   /// dydt = the part's value.
   virtual void evaluate(double t, ConstVectorRef y, VectorRef dydt) = 0;
 
-  /// A matrix with the pattern of the part's Jacobian and a full diagonal.
+  /// A matrix with the pattern of the part's Jacobian and a full diagonal at the start; `jacobian` takes
+  /// another one when the system's `pattern_revision` has changed.
   virtual const SparseMatrix& pattern() const = 0;
 
-  /// The part's exact Jacobian, of `pattern()`.
+  /// The part's exact Jacobian.
   virtual const SparseMatrix& jacobian(double t, ConstVectorRef y) = 0;
 };
 

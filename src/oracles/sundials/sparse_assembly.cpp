@@ -1,6 +1,6 @@
 #include "oracles/sundials/sparse_assembly.hpp"
 
-#include <algorithm>
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::oracles::detail {
 
@@ -14,11 +14,7 @@ SparseAssembly::SparseAssembly(Index rows, Index columns, const std::vector<std:
   matrix_.setFromTriplets(entries.begin(), entries.end());
   matrix_.makeCompressed();
   slots_.reserve(places.size());
-  for (const auto& [row, column] : places) {
-    const int* first = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column];
-    const int* last = matrix_.innerIndexPtr() + matrix_.outerIndexPtr()[column + 1];
-    slots_.push_back(std::lower_bound(first, last, static_cast<int>(row)) - matrix_.innerIndexPtr());
-  }
+  for (const auto& [row, column] : places) slots_.push_back(sparse::slot_of(matrix_, row, column));
 }
 
 void SparseAssembly::clear() {

@@ -36,6 +36,7 @@ struct Search {
   CallbackGuard guard{};
   std::string message{};
   SparseMatrix matrix = system.tangent_pattern();
+  SparseDirectSolver* klu = nullptr;                        ///< set before the search starts
   Vector rest = Vector::Zero(system.degrees_of_freedom());  ///< v = 0
 
   Index size() const { return rest.size(); }
@@ -79,7 +80,7 @@ int jacobian(N_Vector x, N_Vector f, SUNMatrix J, void* user_data, N_Vector, N_V
   auto& search = *static_cast<Search*>(user_data);
   return search.guard.call([&] {
     search.assemble(view(x, search.size()), N_VMaxNorm(f));
-    SparseDirectSolver::copy(search.matrix, J);
+    search.klu->copy(search.matrix, J);
     return search.matrix.coeffs().allFinite() ? 0 : 1;
   });
 }
@@ -167,14 +168,15 @@ StaticEquilibrium search_equilibrium(Search& search, ConstVectorRef start) {
   // Scaled by the first residual the numbers are of order one; KINSOL measures them by their maximum.
   const double unit = first_residual > 0.0 && std::isfinite(first_residual) ? first_residual : 1.0;
   N_VConst(1.0 / unit, force_scale.get());
-  const SparseDirectSolver klu(search.matrix, x.get(), context.get());
+  SparseDirectSolver klu(search.matrix, x.get(), context.get());
+  search.klu = &klu;
   const std::unique_ptr<void, KinsolDeleter> kinsol(KINCreate(context.get()));
   if (kinsol == nullptr) throw SystemError("SUNDIALS: KINCreate returned nothing");
   void* memory = kinsol.get();
   require(KINSetErrHandlerFn(memory, keep_message, &search), "KINSetErrHandlerFn");
   require(KINSetUserData(memory, &search), "KINSetUserData");
   require(KINInit(memory, residual, x.get()), "KINInit");
-  require(KINSetLinearSolver(memory, klu.solver.get(), klu.matrix.get()), "KINSetLinearSolver");
+  require(KINSetLinearSolver(memory, klu.solver(), klu.matrix()), "KINSetLinearSolver");
   require(KINSetJacFn(memory, jacobian), "KINSetJacFn");
   require(KINSetMaxSetupCalls(memory, 1), "KINSetMaxSetupCalls");
   require(KINSetNumMaxIters(memory, search.options.maximum_iterations), "KINSetNumMaxIters");

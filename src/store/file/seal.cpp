@@ -10,7 +10,7 @@ namespace fw::store {
 namespace {
 
 constexpr std::string_view seal_prefix = "federwerk sha256 ";
-constexpr std::size_t seal_size = seal_prefix.size() + 64 + 1;
+static_assert(seal_size == seal_prefix.size() + 64 + 1);
 
 std::string content(const DriverFile& file) {
   std::string text(file.size(), '\0');

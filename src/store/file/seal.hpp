@@ -11,6 +11,9 @@ enum class SealState {
   broken,  ///< the content has changed
 };
 
+/// Bytes of a seal: "federwerk sha256 <64 hexadecimal digits>\n".
+inline constexpr std::size_t seal_size = 17 + 64 + 1;
+
 /// Appends "federwerk sha256 <64 hexadecimal digits>\n" to the content of the file. Errors are left in
 /// `file.error_number()`.
 void append_seal(DriverFile& file);

@@ -9,24 +9,51 @@
 
 #include "analysis/fit/power_law.hpp"
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/energy/energy_run.hpp"
 
 namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [energy].
 struct Settings {
-  std::vector<double> steps;    ///< h [s], falling
-  std::int64_t step_count = 0;  ///< of every run; 0: as many as reach the problem's end
+  std::vector<double> steps;
+  std::int64_t step_count = 0;
   std::int64_t bins = 200;
-
-  std::string text() const {
-    return fmt::format("steps = {}\nstep_count = {}\nbins = {}\n", fmt::join(steps, ", "), step_count, bins);
-  }
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("steps", s.steps)
+        .unit("s")
+        .required()
+        .not_empty()
+        .positive()
+        .doc("h, falling; two or more for powers of h"));
+  a(setting("step_count", s.step_count)
+        .integers(0, 10'000'000'000)
+        .quick_at_most(20'000)
+        .doc("steps of every run; 0: as many as reach `t_end`, which has to be a whole number of each"));
+  a(setting("bins", s.bins).integers(4, 100'000).doc("per run"));
+}
+
+struct Spec {
+  std::vector<std::string> methods;
+  Settings settings;
+  std::vector<ProblemSpec> problems;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(methods_setting(spec.methods));
+  a.section({.name = "energy", .doc = "Steps and lengths of the runs.", .is_required = true}, spec.settings);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section();
+}
 
 struct WatchedEntry {
   explicit WatchedEntry(StudyProblem given) : entry(std::move(given)), watched(entry) {}
@@ -53,16 +80,68 @@ class BinTable {
   std::vector<std::vector<double>> rows_;
 };
 
+/// The row of the summary.
+struct Row {
+  std::string problem, method;
+  double step = none;
+  std::int64_t steps_taken = 0;
+  double relative_drift = none;
+  double drift_over_oscillation = none;
+  double relative_oscillation = none;
+  double growth = none;
+  double predicted_growth = none;
+  double drift_exponent = none;
+  double drift_exponent_low = none;
+  double drift_exponent_high = none;
+  double oscillation_exponent = none;
+  double modified_change = none;
+  double momentum_change = none;
+  double momentum_exponent = none;
+  double angular_momentum_change = none;
+  double balance = none;
+  double balance_exponent = none;
+  double balance_exponent_low = none;
+  double balance_exponent_high = none;
+};
+
+void declare(SummaryRow& a, const Row& row) {
+  a("problem", "", row.problem, "its label");
+  a("method", "", row.method, "as in the study, with settings");
+  a("step", "s", row.step, "the first, largest one: what follows is of this run unless it says otherwise");
+  a("steps_taken", "1", row.steps_taken, "");
+  a("relative_drift", "1", row.relative_drift, "drift·duration over the largest energy");
+  a("drift_over_oscillation", "1", row.drift_over_oscillation, "");
+  a("relative_oscillation", "1", row.relative_oscillation, "over the largest energy");
+  a("growth", "1", row.growth, "as in the case");
+  a("predicted_growth", "1", row.predicted_growth, "likewise");
+  a("drift_exponent", "1", row.drift_exponent,
+    "power of h over all runs whose drift is clear; NaN with fewer than two");
+  a("drift_exponent_low", "1", row.drift_exponent_low,
+    "lower end of the 95 % interval; NaN with fewer than three");
+  a("drift_exponent_high", "1", row.drift_exponent_high, "upper end");
+  a("oscillation_exponent", "1", row.oscillation_exponent, "likewise of the oscillation");
+  a("modified_change", "1", row.modified_change,
+    "largest of all runs, over the largest energy; NaN where none is known");
+  a("momentum_change", "1", row.momentum_change,
+    "largest of all runs, over the largest Σ m‖v‖; NaN with outer forces");
+  a("momentum_exponent", "1", row.momentum_exponent,
+    "power of t with which it grows: about ½ for a random walk");
+  a("angular_momentum_change", "1", row.angular_momentum_change,
+    "largest of all runs, over the largest Σ ‖x‖ m‖v‖");
+  a("balance", "1", row.balance, "at the end, over the largest energy; NaN without dampers");
+  a("balance_exponent", "1", row.balance_exponent, "power of h of the balance at the end");
+  a("balance_exponent_low", "1", row.balance_exponent_low, "");
+  a("balance_exponent_high", "1", row.balance_exponent_high, "");
+}
+
 class EnergyCase {
  public:
   EnergyCase(const WatchedEntry& problem, const std::string& call, const Integrator& integrator,
-             const analysis::AmplificationFactors& theory, bool has_coefficients, const Settings& settings,
-             const RunContext& context)
+             const EnergyTheory& theory, const Settings& settings, const RunContext& context)
       : problem_(problem),
         call_(call),
         integrator_(integrator),
         theory_(theory),
-        has_coefficients_(has_coefficients),
         settings_(settings),
         context_(context) {}
 
@@ -78,7 +157,7 @@ class EnergyCase {
     exponents_ = measure_exponents(runs_);
     const EnergyVerdict judged =
         judge_energy(problem_.watched, integrator_.info(),
-                     has_coefficients_ && integrator_.info().is_symplectic, runs_, exponents_);
+                     theory_.has_coefficients && integrator_.info().is_symplectic, runs_, exponents_);
     CaseResult result;
     result.verdict = judged.verdict;
     result.reason = judged.reason;
@@ -187,72 +266,62 @@ class EnergyCase {
     const auto scale = [](const EnergyObserver& seen) { return seen.scale(); };
     const double balance =
         first.seen->balance().empty() ? none : first.seen->balance().back() / first.seen->scale();
-    result.summary = {
-        {"problem", "", problem_.entry.label},
-        {"method", "", call_},
-        {"step", "s", first.step},
-        {"steps_taken", "1", static_cast<std::int64_t>(first.seen->steps_taken())},
-        {"relative_drift", "1", first.drift.valid ? first.relative_drift() : none},
-        {"drift_over_oscillation", "1", first.drift.valid ? first.drift.significance() : none},
-        {"relative_oscillation", "1",
-         first.drift.valid ? first.drift.oscillation / first.seen->scale() : none},
-        {"growth", "1", std::expm1(first.growth)},
-        {"predicted_growth", "1", std::expm1(first.predicted_growth)},
-        {"drift_exponent", "1", exponents_.drift.value},
-        {"drift_exponent_low", "1", exponents_.drift.low},
-        {"drift_exponent_high", "1", exponents_.drift.high},
-        {"oscillation_exponent", "1", exponents_.oscillation.value},
-        {"modified_change", "1",
-         largest_relative([](const EnergyObserver& seen) { return seen.modified_change(); }, scale)},
-        {"momentum_change", "1",
-         largest_relative([](const EnergyObserver& seen) { return seen.momentum_change(); },
-                          [](const EnergyObserver& seen) { return seen.momentum_scale(); })},
-        {"momentum_exponent", "1", momentum_exponent()},
-        {"angular_momentum_change", "1",
-         largest_relative([](const EnergyObserver& seen) { return seen.angular_change(); },
-                          [](const EnergyObserver& seen) { return seen.angular_scale(); })},
-        {"balance", "1", balance},
-        {"balance_exponent", "1", exponents_.balance.value},
-        {"balance_exponent_low", "1", exponents_.balance.low},
-        {"balance_exponent_high", "1", exponents_.balance.high},
-        {"verdict", "", std::string(to_string(result.verdict))},
-        {"reason", "", result.reason}};
+    result.summary = cells_of(Row{
+        .problem = problem_.entry.label,
+        .method = call_,
+        .step = first.step,
+        .steps_taken = static_cast<std::int64_t>(first.seen->steps_taken()),
+        .relative_drift = first.drift.valid ? first.relative_drift() : none,
+        .drift_over_oscillation = first.drift.valid ? first.drift.significance() : none,
+        .relative_oscillation = first.drift.valid ? first.drift.oscillation / first.seen->scale() : none,
+        .growth = std::expm1(first.growth),
+        .predicted_growth = std::expm1(first.predicted_growth),
+        .drift_exponent = exponents_.drift.value,
+        .drift_exponent_low = exponents_.drift.low,
+        .drift_exponent_high = exponents_.drift.high,
+        .oscillation_exponent = exponents_.oscillation.value,
+        .modified_change =
+            largest_relative([](const EnergyObserver& seen) { return seen.modified_change(); }, scale),
+        .momentum_change = largest_relative([](const EnergyObserver& seen) { return seen.momentum_change(); },
+                                            [](const EnergyObserver& seen) { return seen.momentum_scale(); }),
+        .momentum_exponent = momentum_exponent(),
+        .angular_momentum_change =
+            largest_relative([](const EnergyObserver& seen) { return seen.angular_change(); },
+                             [](const EnergyObserver& seen) { return seen.angular_scale(); }),
+        .balance = balance,
+        .balance_exponent = exponents_.balance.value,
+        .balance_exponent_low = exponents_.balance.low,
+        .balance_exponent_high = exponents_.balance.high});
   }
 
   const WatchedEntry& problem_;
   const std::string& call_;
   const Integrator& integrator_;
-  const analysis::AmplificationFactors& theory_;
-  bool has_coefficients_;
+  const EnergyTheory& theory_;
   const Settings& settings_;
   const RunContext& context_;
   std::vector<EnergyRun> runs_;
   EnergyExponents exponents_;
 };
 
-Settings read_settings(const CheckedTable& spec, bool quick) {
-  Settings settings;
-  const CheckedTable table = spec.table("energy");
-  settings.steps = table.numbers("steps", NumberRule::positive);
-  if (settings.steps.empty()) table.fail("steps", "found an empty list, expected at least one step");
-  for (std::size_t k = 1; k < settings.steps.size(); ++k) {
-    if (settings.steps[k] >= settings.steps[k - 1]) {
-      table.fail("steps", {k},
-                 fmt::format("found {}, expected less than the step before", settings.steps[k]));
-    }
-  }
-  settings.step_count = table.integer_or("step_count", settings.step_count, 0, 10'000'000'000);
-  settings.bins = table.integer_or("bins", settings.bins, 4, 100'000);
-  const std::int64_t quick_count = spec.table_or_empty("quick").integer_or(
-      "step_count", std::min<std::int64_t>(settings.step_count, 20'000), 0, 10'000'000'000);
-  if (quick) settings.step_count = quick_count;
-  return settings;
+EnergyTheory energy_theory(const analysis::Theory& theory) {
+  return {.factors = analysis::oscillator_factors(theory),
+          .modified_energy = theory.modified_energy,
+          .has_coefficients = !std::holds_alternative<std::monostate>(theory.on_position_forces)};
 }
 
-void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const Settings settings = read_settings(spec, quick);
-  const std::vector<std::string> methods = read_methods(spec, catalog);
-  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
+void plan_energy(const Spec& study, const StudyInput& input, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  const Catalog& catalog = input.catalog;
+  const Settings& settings = study.settings;
+  for (std::size_t k = 1; k < settings.steps.size(); ++k) {
+    if (settings.steps[k] >= settings.steps[k - 1]) {
+      spec.table("energy").fail(
+          "steps", {k}, fmt::format("found {}, expected less than the step before", settings.steps[k]));
+    }
+  }
+  const std::vector<std::string>& methods = checked_methods(study.methods, spec, catalog);
+  for (StudyProblem& entry : make_problems(study.problems, input, plan.warnings)) {
     std::shared_ptr<const WatchedEntry> problem;
     try {
       problem = std::make_shared<const WatchedEntry>(std::move(entry));
@@ -280,13 +349,11 @@ void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, P
       }
       plan.cases.push_back(
           {.id = group_name(problem->entry.label + "-" + call),
-           .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" + settings.text(),
-           .run = [problem, call, integrator, theory = catalog.oscillator_theory(call),
-                   has_coefficients =
-                       !std::holds_alternative<std::monostate>(catalog.equivalent_scheme(call)),
+           .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" +
+                       settings::identity_text(settings),
+           .run = [problem, call, integrator, theory = energy_theory(catalog.theory(call)),
                    settings](const RunContext& context) {
-             return EnergyCase(*problem, call, *integrator, theory, has_coefficients, settings, context)
-                 .run();
+             return EnergyCase(*problem, call, *integrator, theory, settings, context).run();
            }});
     }
   }
@@ -295,11 +362,15 @@ void read_energy(const CheckedTable& spec, const Catalog& catalog, bool quick, P
 }  // namespace
 
 StudyKind energy_kind() {
-  return {.name = "energy",
-          .title = "Energy over long runs",
-          .description =
-              "drift, oscillation and growth of the energy, modified energies, momenta, work of dampers",
-          .read = read_energy};
+  return declared_kind<Spec>(
+      {.name = "energy",
+       .title = "Energy over long runs",
+       .description =
+           "drift, oscillation and growth of the energy, modified energies, momenta, work of dampers",
+       .summary = columns_of<Row>(),
+       .verdict_meaning = "`holds`: every statement of theory that applies",
+       .reason_meaning = "these statements with their figures"},
+      plan_energy);
 }
 
 }  // namespace fw::study

@@ -17,10 +17,8 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) {
     quantity = "energy";
     unit = std::string(1, 'J');  // GCC 12 warns wrongly of the assignment of one letter
     value = [s = springs, n](double, ConstVectorRef y) { return s->energies(y.head(n), y.tail(n)).total(); };
-    const mechanics::MassSpringModel& model = springs->model();
     is_damped = springs->force_class() == ForceClass::velocity;
-    is_free = model.fixed.empty() && model.anchors.empty() && model.obstacles.empty() && model.drag == 0.0 &&
-              norm(model.gravity) == 0.0;
+    is_free = springs->model().fixed.empty() && springs->elements().is_internal();
     return;
   }
   if (problem.invariants.empty()) {
@@ -33,18 +31,17 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) {
   quantity = first.name;
   unit = first.unit;
   value = first.value;
-  is_isolated_spring = problem.name == "harmonic_oscillator" || problem.name == "rotation";
+  is_isolated_spring = problem.test_equation == TestEquation::single_oscillation;
   if (is_isolated_spring) frequency = problem.stiffness();
 }
 
-EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
-                               std::uint64_t steps, std::uint64_t bins, const RunContext& context)
+EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFunction modified, double step,
+                               std::uint64_t steps, std::uint64_t bins)
     : watched_(watched),
       modified_(std::move(modified)),
       step_(step),
       steps_(steps),
       bins_(std::min(bins, steps + 1)),
-      context_(context),
       change_(steps + 1, bins) {
   const auto series = [&] { return analysis::BinnedSeries(steps + 1, bins); };
   if (watched.is_isolated_spring) logarithm_ = series();
@@ -76,7 +73,7 @@ bool EnergyObserver::observe(const StepView& view) {
     if (watched_.is_free) watch_momenta(view, view.state.head(n), view.state.tail(n));
     if (watched_.is_damped) watch_work(view, view.state.head(n), view.state.tail(n), change);
   }
-  return !context_.is_interrupted();
+  return true;
 }
 
 void EnergyObserver::watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v) {

@@ -30,8 +30,8 @@ struct WatchedProblem {
 /// Streams one run into bins: memory does not grow with the number of steps.
 class EnergyObserver final : public Observer {
  public:
-  EnergyObserver(const WatchedProblem& watched, analysis::ModifiedEnergy modified, double step,
-                 std::uint64_t steps, std::uint64_t bins, const RunContext& context);
+  EnergyObserver(const WatchedProblem& watched, analysis::EnergyFunction modified, double step,
+                 std::uint64_t steps, std::uint64_t bins);
 
   bool observe(const StepView& view) override;
 
@@ -55,10 +55,9 @@ class EnergyObserver final : public Observer {
   void watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change);
 
   const WatchedProblem& watched_;
-  analysis::ModifiedEnergy modified_;
+  analysis::EnergyFunction modified_;
   double step_;
   std::uint64_t steps_, bins_;
-  const RunContext& context_;
   double start_ = 0.0, scale_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
   analysis::BinnedSeries change_;

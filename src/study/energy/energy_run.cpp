@@ -24,7 +24,7 @@ class Findings {
     if (!holds) failed_ = true;
     texts_.push_back(holds ? std::move(text) : "FAILS: " + text);
   }
-  void note(std::string text) { texts_.push_back(std::move(text)); }
+  void note(const std::string& text) { texts_.push_back(text); }
 
   EnergyVerdict verdict() const {
     return {failed_    ? Verdict::fails
@@ -211,18 +211,16 @@ bool EnergyRun::has_blown_up() const {
 }
 
 EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const Integrator& integrator,
-                        const analysis::AmplificationFactors& theory, double step, std::uint64_t steps,
-                        std::uint64_t bins, const RunContext& context) {
+                        const EnergyTheory& theory, double step, std::uint64_t steps, std::uint64_t bins,
+                        const RunContext& context) {
   EnergyRun run;
   run.step = step;
   run.steps = steps;
   Ivp ivp = given;
   ivp.t1 = ivp.t0 + step * static_cast<double>(steps);
   run.seen = std::make_unique<EnergyObserver>(
-      watched, analysis::modified_energy(integrator.info().name, ivp, step, watched.value), step, steps, bins,
-      context);
-  const Solution solution = integrator.solve(ivp, FixedStep{.step = step}, *run.seen);
-  if (context.is_interrupted()) throw Interrupted{};
+      watched, analysis::modified_energy(theory.modified_energy, ivp, step, watched.value), step, steps, bins);
+  const Solution solution = context.solve(integrator, ivp, FixedStep{.step = step}, *run.seen);
   run.status = solution.status;
   run.end_time = solution.time;
   run.drift = analysis::fit_drift(run.seen->change());
@@ -232,9 +230,10 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   if (logarithm && logarithm->count() > 10) {
     const double taken = static_cast<double>(logarithm->count());
     run.growth = 0.5 * logarithm->slope();
-    if (theory) {
+    if (theory.factors) {
       const double z = watched.frequency * step;
-      const analysis::NumericalOscillation predicted = analysis::numerical_oscillations(theory, {z}).front();
+      const analysis::NumericalOscillation predicted =
+          analysis::numerical_oscillations(theory.factors, {z}).front();
       if (predicted.oscillates) run.predicted_growth = std::log(std::abs(predicted.factor));
       // ln E swings by `swing` about its trend with the frequency 2z: that leaves a slope of 6·swing/(z n²).
       const analysis::Drift trend = analysis::fit_drift(*logarithm);

@@ -30,10 +30,17 @@ struct EnergyRun {
   bool has_blown_up() const;
 };
 
+/// What theory says of a method's energy.
+struct EnergyTheory {
+  analysis::AmplificationFactors factors;  ///< on a single oscillation
+  analysis::ModifiedEnergyRule modified_energy = nullptr;
+  bool has_coefficients = false;  ///< of the scheme that it is on forces f(q)
+};
+
 /// Runs `integrator` for `steps` steps. Throws `Interrupted`.
 EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& ivp, const Integrator& integrator,
-                        const analysis::AmplificationFactors& theory, double step, std::uint64_t steps,
-                        std::uint64_t bins, const RunContext& context);
+                        const EnergyTheory& theory, double step, std::uint64_t steps, std::uint64_t bins,
+                        const RunContext& context);
 
 /// An exponent in h: by a power law with a 95 % interval from three steps on, from two steps the plain
 /// quotient without one (NaN).

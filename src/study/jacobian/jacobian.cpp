@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/jacobian/jacobian_definiteness.hpp"
 #include "study/jacobian/jacobian_derivatives.hpp"
+#include "study/jacobian/jacobian_row.hpp"
 #include "study/jacobian/jacobian_runs.hpp"
 #include "study/problem_spec.hpp"
 
@@ -17,17 +19,15 @@ namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 /// What `--quick` leaves: entries of each list, samples of each subject.
 struct QuickRule {
   bool is_on = false;
-  std::int64_t points = 0;
-  std::int64_t samples = 0;
+  std::int64_t points = 5;
+  std::int64_t samples = 20;
 };
-
-QuickRule read_quick(const CheckedTable& spec, bool quick) {
-  const CheckedTable table = spec.table_or_empty("quick");
-  return {quick, table.integer_or("points", 5, 2, 1000), table.integer_or("samples", 20, 1, 100'000)};
-}
 
 /// With --quick `rule.points` entries, the first and the last among them.
 std::vector<double> thinned(std::vector<double> values, const QuickRule& rule) {
@@ -40,95 +40,172 @@ std::vector<double> thinned(std::vector<double> values, const QuickRule& rule) {
   return kept;
 }
 
-/// A list of positive numbers, or { from, to, count } for a geometric sequence.
-std::vector<double> read_sequence(const CheckedTable& table, const std::string& key, const QuickRule& rule) {
-  if (!table.is_table(key)) {
-    std::vector<double> values = table.numbers(key, NumberRule::positive);
-    if (values.empty()) table.fail(key, "found an empty list, expected at least one number");
-    return thinned(std::move(values), rule);
-  }
-  const CheckedTable range = table.table(key);
-  const double from = range.positive_number("from"), to = range.positive_number("to");
-  const std::int64_t count = range.integer("count", 2, 10'000);
-  std::vector<double> values;
-  for (std::int64_t k = 0; k < count; ++k) {
-    values.push_back(from * std::pow(to / from, static_cast<double>(k) / static_cast<double>(count - 1)));
-  }
-  values.back() = to;
-  return thinned(std::move(values), rule);
-}
-
 struct Springs {
   mechanics::SpringLaw law;
   std::string name;
 };
 
-std::vector<Springs> spring_laws(const CheckedTable& table) {
+const std::vector<Springs>& spring_laws() {
   using mechanics::SpringLaw;
-  const std::vector<Springs> all = {
+  static const std::vector<Springs> all = {
       {SpringLaw::hooke, "hooke"}, {SpringLaw::strain, "strain"}, {SpringLaw::tension_only, "tension_only"}};
-  std::vector<Springs> chosen;
-  for (const std::string& name : table.strings_or("laws", {"hooke", "strain", "tension_only"})) {
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Springs& one) { return one.name == name; });
-    if (found == all.end()) {
-      table.fail("laws", fmt::format("found \"{}\", expected hooke, strain or tension_only", name));
-    }
-    chosen.push_back(*found);
-  }
-  return chosen;
+  return all;
 }
 
-/// The keys of [derivatives] and [springs].
+/// The keys of [springs].
+struct SpringSpec {
+  std::vector<std::string> laws = {"hooke", "strain", "tension_only"};
+  std::vector<std::string> dampers = {"without", "with"};
+  std::int64_t samples = 200;
+};
+
+void declare(Archive& a, SpringSpec& springs) {
+  a(setting("laws", springs.laws)
+        .not_empty()
+        .choices({"hooke", "strain", "tension_only"})
+        .doc("of random single springs"));
+  a(setting("dampers", springs.dampers)
+        .not_empty()
+        .choices({"without", "with"})
+        .doc("springs without and with dampers"));
+  a(setting("samples", springs.samples).integers(1, 100'000).doc("springs of each law"));
+}
+
+/// The keys of [derivatives].
 struct DerivativeSpec {
   DerivativeSettings settings;
-  std::vector<std::string> formulas;
+  std::vector<std::string> formulas = derivative_formulas();
   std::int64_t samples = 5;   ///< of each problem
   double displacement = 0.1;  ///< in typical lengths
   bool pattern = true;
+};
 
-  std::string text() const {
-    return fmt::format(
-        "tolerance = {}\nslope_tolerance = {}\nincrements = {} {} {}\nsamples = {}\ndisplacement = {}\n",
-        settings.tolerance, settings.slope_tolerance, settings.largest_increment, settings.smallest_increment,
-        settings.per_decade, samples, displacement);
+void declare(Archive& a, DerivativeSpec& d) {
+  DerivativeSettings& s = d.settings;
+  a(setting("formulas", d.formulas)
+        .not_empty()
+        .choices(derivative_formulas())
+        .doc("`printed_e1`, `printed_e2` for undamped Hooke springs of `[springs]` only"));
+  a(setting("tolerance", s.tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest relative deviation of an analytic derivative that holds"));
+  a(setting("slope_tolerance", s.slope_tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|observed − predicted slope\\| of a difference that holds"));
+  a(setting("largest_increment", s.largest_increment)
+        .unit("typical length")
+        .between(1e-20, 1e3)
+        .doc("of differences"));
+  a(setting("smallest_increment", s.smallest_increment)
+        .unit("typical length")
+        .between(1e-20, 1e3)
+        .doc("of differences"));
+  a(setting("per_decade", s.per_decade).integers(1, 100).doc("increments"));
+  a(setting("samples", d.samples).integers(1, 100'000).doc("states of each problem"));
+  a(setting("displacement", d.displacement)
+        .unit("typical length")
+        .nonnegative()
+        .doc("of each component of the initial state, at random: nothing is at rest or straight then"));
+  a(setting("pattern", d.pattern).selects_cases().doc("the part `pattern` for each problem"));
+}
+
+/// The state that [definiteness] and [runs] begin with; lengths in the typical length of the problem's
+/// springs.
+struct SqueezeSpec {
+  double closing_rate = 0.0, displacement = 0.05, speed = 0.0;
+
+  Squeeze squeeze(std::int64_t seed) const {
+    return {.closing_rate = closing_rate, .displacement = displacement, .speed = speed, .seed = seed};
   }
 };
 
-DerivativeSpec read_derivatives(const CheckedTable& spec, const QuickRule& rule) {
-  const CheckedTable table = spec.table_or_empty("derivatives");
-  DerivativeSpec result;
-  DerivativeSettings& settings = result.settings;
-  result.formulas = table.strings_or("formulas", derivative_formulas());
-  for (std::size_t k = 0; k < result.formulas.size(); ++k) {
-    const auto& known = derivative_formulas();
-    if (std::find(known.begin(), known.end(), result.formulas[k]) == known.end()) {
-      table.fail("formulas", {k},
-                 fmt::format("found \"{}\", expected one of {}", result.formulas[k], fmt::join(known, ", ")));
-    }
+void declare(Archive& a, SqueezeSpec& squeeze) {
+  a(setting("closing_rate", squeeze.closing_rate)
+        .unit("1/s")
+        .doc("velocities −rate·(x − centre): what dampers see"));
+  a(setting("displacement", squeeze.displacement)
+        .unit("typical length")
+        .nonnegative()
+        .doc("random, before the compression: buckling needs a direction"));
+  a(setting("speed", squeeze.speed)
+        .unit("typical length/s")
+        .nonnegative()
+        .doc("largest random velocity of a moving component, added"));
+}
+
+/// The keys of [definiteness].
+struct DefinitenessSpec {
+  std::vector<double> compressions, steps;
+  SqueezeSpec start;
+  std::vector<std::string> tangents = tangent_model_names();
+};
+
+void declare_squeezed(Archive& a, std::vector<double>& compressions, std::vector<double>& steps) {
+  a(setting("compressions", compressions)
+        .unit("1")
+        .required()
+        .not_empty()
+        .positive()
+        .or_sequence()
+        .doc("factors of all distances from the centre"));
+  a(setting("steps", steps).unit("s").required().not_empty().positive().or_sequence().doc("h"));
+}
+
+void declare(Archive& a, DefinitenessSpec& spec) {
+  declare_squeezed(a, spec.compressions, spec.steps);
+  declare(a, spec.start);
+  a(setting("tangents", spec.tangents).not_empty().choices(tangent_model_names()).doc("models of K"));
+}
+
+/// The keys of [runs].
+struct RunsSpec {
+  std::vector<double> compressions, steps;
+  SqueezeSpec start;
+  std::vector<std::string> methods;
+};
+
+void declare(Archive& a, RunsSpec& spec) {
+  declare_squeezed(a, spec.compressions, spec.steps);
+  declare(a, spec.start);
+  a(methods_setting(spec.methods));
+}
+
+struct Spec {
+  std::optional<SpringSpec> springs;
+  std::optional<DerivativeSpec> derivatives;
+  std::optional<DefinitenessSpec> definiteness;
+  std::optional<RunsSpec> runs;
+  std::vector<ProblemSpec> problems;
+  QuickRule rule;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a.optional_section({"springs", "Random single springs."}, spec.springs);
+  a.optional_section(
+      {"derivatives", "Derivatives by formulas against complex steps, of springs and problems."},
+      spec.derivatives);
+  // Not asked for, the section stays out of the resolved specification: there it would be asked for.
+  if (!a.is_description() && spec.springs && !spec.derivatives) {
+    spec.derivatives.emplace();
+    a.section({"derivatives"}, *spec.derivatives);
   }
-  settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
-  settings.slope_tolerance =
-      table.number_or("slope_tolerance", settings.slope_tolerance, NumberRule::positive);
-  const auto increment = [&](const std::string& key, double value) {
-    const double found = table.number_or(key, value, NumberRule::positive);
-    if (found < 1e-20 || found > 1e3) {
-      table.fail(key, fmt::format("found {}, expected 1e-20 to 1000 typical lengths", found));
-    }
-    return found;
-  };
-  settings.largest_increment = increment("largest_increment", settings.largest_increment);
-  settings.smallest_increment = increment("smallest_increment", settings.smallest_increment);
-  if (settings.smallest_increment >= settings.largest_increment) {
-    table.fail("smallest_increment", fmt::format("found {}, expected less than the largest increment {}",
-                                                 settings.smallest_increment, settings.largest_increment));
-  }
-  settings.per_decade = table.integer_or("per_decade", settings.per_decade, 1, 100);
-  result.samples = table.integer_or("samples", result.samples, 1, 100'000);
-  if (rule.is_on) result.samples = std::min(result.samples, rule.samples);
-  result.displacement = table.number_or("displacement", result.displacement, NumberRule::nonnegative);
-  result.pattern = table.boolean_or("pattern", result.pattern);
-  return result;
+  a.optional_section({"definiteness",
+                      "Definiteness of K and of the matrix of implicit steps over compression "
+                      "and step."},
+                     spec.definiteness);
+  a.optional_section({"runs", "Runs from compressed springs."}, spec.runs);
+  a.sections({.name = "problem",
+              .doc = "A problem of the catalogue, or a scene; not needed with [springs].",
+              .is_required = !a.is_description() && !spec.springs},
+             spec.problems);
+  a.quick_section([&] {
+    a(setting("points", spec.rule.points)
+          .integers(2, 1000)
+          .doc("entries of each list of compressions and steps, the first and last among them"));
+    a(setting("samples", spec.rule.samples).integers(1, 100'000).doc("at most, of each subject"));
+  });
 }
 
 bool is_printed(const std::string& formula) {
@@ -137,32 +214,27 @@ bool is_printed(const std::string& formula) {
 
 void plan_derivatives(const DerivativeSubject& subject, const std::string& identity, bool is_printable,
                       const DerivativeSpec& derivatives, Plan& plan) {
+  const std::string settings_text = settings::identity_text(derivatives);
   for (const std::string& formula : derivatives.formulas) {
     if (is_printed(formula) && !is_printable) continue;
     plan.cases.push_back(
         {.id = group_name(subject.label + "-" + formula),
          .identity = fmt::format("jacobian derivative\n{}seed = {}\n{}formula = {}\n", identity, plan.seed,
-                                 derivatives.text(), formula),
+                                 settings_text, formula),
          .run = [subject, formula, settings = derivatives.settings](const RunContext& context) {
            return run_derivative(subject, formula, settings, context);
          }});
   }
 }
 
-void plan_springs(const CheckedTable& spec, const DerivativeSpec& derivatives, const QuickRule& rule,
+void plan_springs(const SpringSpec& springs, const DerivativeSpec& derivatives, const QuickRule& rule,
                   Plan& plan) {
-  if (!spec.has("springs")) return;
-  const CheckedTable table = spec.table("springs");
-  const std::vector<Springs> laws = spring_laws(table);
-  std::int64_t samples = table.integer_or("samples", 200, 1, 100'000);
-  if (rule.is_on) samples = std::min(samples, rule.samples);
-  const std::vector<std::string> dampers = table.strings_or("dampers", {"without", "with"});
-  for (const Springs& law : laws) {
-    for (std::size_t k = 0; k < dampers.size(); ++k) {
-      if (dampers[k] != "without" && dampers[k] != "with") {
-        table.fail("dampers", {k}, fmt::format("found \"{}\", expected without or with", dampers[k]));
-      }
-      const SpringSampling sampling{law.law, dampers[k] == "with"};
+  const std::int64_t samples = rule.is_on ? std::min(springs.samples, rule.samples) : springs.samples;
+  for (const std::string& name : springs.laws) {
+    const Springs& law = *std::find_if(spring_laws().begin(), spring_laws().end(),
+                                       [&](const Springs& one) { return one.name == name; });
+    for (const std::string& dampers : springs.dampers) {
+      const SpringSampling sampling{law.law, dampers == "with"};
       const std::string label = law.name + (sampling.is_damped ? "-damped" : "");
       const DerivativeSubject subject{
           label, [sampling, samples, seed = plan.seed] { return random_springs(sampling, samples, seed); }};
@@ -184,18 +256,9 @@ void plan_problem_derivatives(const StudyProblem& problem, const DerivativeSpec&
   if (!derivatives.pattern) return;
   plan.cases.push_back(
       {.id = group_name(problem.label + "-pattern"),
-       .identity =
-           fmt::format("jacobian pattern\n{}seed = {}\n{}", problem.identity, plan.seed, derivatives.text()),
+       .identity = fmt::format("jacobian pattern\n{}seed = {}\n{}", problem.identity, plan.seed,
+                               settings::identity_text(derivatives)),
        .run = [subject](const RunContext& context) { return run_pattern(subject, context); }});
-}
-
-/// The state that [definiteness] and [runs] begin with; lengths in the typical length of the problem's
-/// springs.
-Squeeze read_squeeze(const CheckedTable& table, std::int64_t seed) {
-  return {.closing_rate = table.number_or("closing_rate", 0.0),
-          .displacement = table.number_or("displacement", 0.05, NumberRule::nonnegative),
-          .speed = table.number_or("speed", 0.0, NumberRule::nonnegative),
-          .seed = seed};
 }
 
 Squeeze scaled(Squeeze squeeze, const StudyProblem& problem) {
@@ -233,22 +296,13 @@ constexpr Index most_unknowns = 5000, most_degrees_of_freedom = 600;
 /// Steps of one run of [runs].
 constexpr double most_steps = 1e6;
 
-void plan_definiteness(const CheckedTable& spec, const std::vector<StudyProblem>& problems,
-                       const QuickRule& rule, Plan& plan) {
-  if (!spec.has("definiteness")) return;
-  const CheckedTable table = spec.table("definiteness");
+void plan_definiteness(const DefinitenessSpec& given, const CheckedTable& spec,
+                       const std::vector<StudyProblem>& problems, const QuickRule& rule, Plan& plan) {
   DefinitenessSettings settings;
-  settings.compressions = read_sequence(table, "compressions", rule);
-  settings.steps = read_sequence(table, "steps", rule);
-  settings.squeeze = read_squeeze(table, plan.seed);
-  const std::vector<std::string> models = table.strings_or("tangents", tangent_model_names());
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    const auto& known = tangent_model_names();
-    if (std::find(known.begin(), known.end(), models[k]) == known.end()) {
-      table.fail("tangents", {k},
-                 fmt::format("found \"{}\", expected one of {}", models[k], fmt::join(known, ", ")));
-    }
-  }
+  settings.compressions = thinned(given.compressions, rule);
+  settings.steps = thinned(given.steps, rule);
+  settings.squeeze = given.start.squeeze(plan.seed);
+  const std::vector<std::string>& models = given.tangents;
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "definiteness", problem);
     require_small(spec, "definiteness", problem,
@@ -268,15 +322,16 @@ void plan_definiteness(const CheckedTable& spec, const std::vector<StudyProblem>
   }
 }
 
-void plan_runs(const CheckedTable& spec, const Catalog& catalog, const std::vector<StudyProblem>& problems,
+void plan_runs(const RunsSpec& given, const StudyInput& input, const std::vector<StudyProblem>& problems,
                const QuickRule& rule, Plan& plan) {
-  if (!spec.has("runs")) return;
+  const CheckedTable& spec = input.file;
+  const Catalog& catalog = input.catalog;
   const CheckedTable table = spec.table("runs");
   CompressedRunSettings settings;
-  settings.compressions = read_sequence(table, "compressions", rule);
-  settings.steps = read_sequence(table, "steps", rule);
-  settings.squeeze = read_squeeze(table, plan.seed);
-  const std::vector<std::string> methods = read_methods(table, catalog);
+  settings.compressions = thinned(given.compressions, rule);
+  settings.steps = thinned(given.steps, rule);
+  settings.squeeze = given.start.squeeze(plan.seed);
+  const std::vector<std::string>& methods = checked_methods(given.methods, table, catalog);
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "runs", problem);
     const double duration = problem.problem.ivp.t1 - problem.problem.ivp.t0;
@@ -308,23 +363,29 @@ void plan_runs(const CheckedTable& spec, const Catalog& catalog, const std::vect
   }
 }
 
-void read_jacobian(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const QuickRule rule = read_quick(spec, quick);
-  const bool wants_derivatives = spec.has("derivatives") || spec.has("springs");
-  // Not asked for, the section stays out of the resolved specification: there it would be asked for.
-  const DerivativeSpec derivatives =
-      read_derivatives(wants_derivatives ? spec : CheckedTable::parse_text("", spec.source_name()), rule);
-  std::vector<StudyProblem> problems;
-  if (!spec.has("springs") || spec.has("problem")) problems = read_problems(spec, catalog, plan.warnings);
-  plan_springs(spec, derivatives, rule, plan);
-  if (wants_derivatives) {
+void check(const DerivativeSettings& settings, const CheckedTable& table) {
+  if (settings.smallest_increment < settings.largest_increment) return;
+  table.fail("smallest_increment", fmt::format("found {}, expected less than the largest increment {}",
+                                               settings.smallest_increment, settings.largest_increment));
+}
+
+void plan_jacobian(const Spec& study, const StudyInput& input, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  QuickRule rule = study.rule;
+  rule.is_on = input.is_quick;
+  const std::vector<StudyProblem> problems = make_problems(study.problems, input, plan.warnings);
+  if (study.derivatives) {
+    DerivativeSpec derivatives = *study.derivatives;
+    check(derivatives.settings, input.section("derivatives"));
+    if (rule.is_on) derivatives.samples = std::min(derivatives.samples, rule.samples);
+    if (study.springs) plan_springs(*study.springs, derivatives, rule, plan);
     for (const StudyProblem& problem : problems) {
       require_small(spec, "derivatives", problem, problem.problem.ivp.y0.size(), most_unknowns);
       plan_problem_derivatives(problem, derivatives, plan);
     }
   }
-  plan_definiteness(spec, problems, rule, plan);
-  plan_runs(spec, catalog, problems, rule, plan);
+  if (study.definiteness) plan_definiteness(*study.definiteness, spec, problems, rule, plan);
+  if (study.runs) plan_runs(*study.runs, input, problems, rule, plan);
   if (plan.cases.empty()) {
     throw InputError(fmt::format(
         "{}: found none of [derivatives], [springs], [definiteness] and [runs], expected at least one",
@@ -335,13 +396,17 @@ void read_jacobian(const CheckedTable& spec, const Catalog& catalog, bool quick,
 }  // namespace
 
 StudyKind jacobian_kind() {
-  return {.name = "jacobian",
-          .title = "Derivatives of the forces and their definiteness",
-          .description =
-              "analytic derivatives against complex steps, differences and the lecture's printed formulas; "
-              "sparsity; definiteness of K and of implicit steps over compression and step, and what Newton, "
-              "conjugate gradients and long runs make of it",
-          .read = read_jacobian};
+  return declared_kind<Spec>(
+      {.name = "jacobian",
+       .title = "Derivatives of the forces and their definiteness",
+       .description =
+           "analytic derivatives against complex steps, differences and the lecture's printed formulas; "
+           "sparsity; definiteness of K and of implicit steps over compression and step, and what Newton, "
+           "conjugate gradients and long runs make of it",
+       .summary = columns_of<JacobianRow>(),
+       .verdict_meaning = "see [the kind's page](studies/jacobian.md)",
+       .reason_meaning = ""},
+      plan_jacobian);
 }
 
 }  // namespace fw::study

@@ -71,8 +71,8 @@ struct IterationCount {
 IterationCount newton(const Ivp& ivp, double step, TangentModel model, bool by_conjugate_gradients) {
   ImplicitEulerEquation equation(ivp, step, model, by_conjugate_gradients);
   const Index n = ivp.system->second_order()->degrees_of_freedom();
-  linalg::Newton iteration(n, by_conjugate_gradients ? linalg::LinearSolverKind::conjugate_gradient
-                                                     : linalg::LinearSolverKind::sparse_lu);
+  linalg::Newton iteration(
+      n, by_conjugate_gradients ? linalg::make_linear_solver({}) : linalg::default_direct_solver());
   Vector increment = Vector::Zero(n);
   Work work;
   const Status status = iteration.solve(equation, increment, 0.0, work);
@@ -138,7 +138,7 @@ class DefinitenessCase {
     CaseResult result;
     judge(row, result);
     add_columns(result);
-    add_summary(row, result);
+    result.summary = cells_of(row);
     return result;
   }
 
@@ -165,7 +165,7 @@ class DefinitenessCase {
     predicted_.push_back(predict(tangent, system, top));
     check_limits();
     for (const double step : settings_.steps) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       const Matrix A = step_matrix(ivp, assembly, step, model_);
       eigenvalue_.push_back(analysis::smallest_eigenvalue(A));
       record(newton(ivp, step, model_, false), newton_, newton_status_);

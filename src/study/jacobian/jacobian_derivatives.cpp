@@ -65,15 +65,11 @@ double smallest(const std::vector<double>& values) {
   return values.empty() ? JacobianRow::none : *std::min_element(values.begin(), values.end());
 }
 
-void stop_if_interrupted(const RunContext& context) {
-  if (context.is_interrupted()) throw Interrupted{};
-}
-
 void run_analytic(const std::vector<JacobianSample>& samples, const DerivativeSettings& settings,
                   const RunContext& context, JacobianRow& row, CaseResult& result) {
   std::vector<double> deviation, deviation_damping, difference;
   for (const JacobianSample& sample : samples) {
-    stop_if_interrupted(context);
+    context.check();
     const Derivatives oracle = by_complex_steps(sample), found = assembled(sample);
     deviation.push_back(relative_deviation(found.K, oracle.K));
     deviation_damping.push_back(relative_deviation(found.D, oracle.D));
@@ -101,7 +97,7 @@ void run_printed(const std::vector<JacobianSample>& samples, Erratum erratum, co
   std::vector<double> deviation, difference, measured, predicted;
   double largest_disagreement = 0.0;
   for (const JacobianSample& sample : samples) {
-    stop_if_interrupted(context);
+    context.check();
     const auto& model = dynamic_cast<const mechanics::MassSpringSystem&>(*sample.system).model();
     const Matrix oracle = by_complex_steps(sample).K;
     const Matrix wrong = printed_stiffness(model, sample.state.head(6), erratum) - oracle;
@@ -164,7 +160,7 @@ std::vector<double> error_curve(const std::vector<JacobianSample>& samples, Diff
     const Matrix oracle = by_complex_steps(sample).K;
     const double length = typical_length(*sample.system);
     for (std::size_t k = 0; k < increment.size(); ++k) {
-      stop_if_interrupted(context);
+      context.check();
       const Matrix J = analysis::difference_jacobian(*sample.system, sample.time, sample.state,
                                                      increment[k] * length, difference);
       const double error = relative_deviation(parts_of(*sample.system, J).K, oracle);
@@ -255,7 +251,7 @@ CaseResult run_derivative(const DerivativeSubject& subject, const std::string& f
   if (formula == "printed_e2") run_printed(samples, Erratum::e2, context, row, result);
   if (formula == "forward") run_difference(samples, Difference::forward, settings, context, row, result);
   if (formula == "central") run_difference(samples, Difference::central, settings, context, row, result);
-  add_summary(row, result);
+  result.summary = cells_of(row);
   return result;
 }
 
@@ -313,7 +309,7 @@ CaseResult run_pattern(const DerivativeSubject& subject, const RunContext&) {
   result.columns = {{"block_row", "1", block_row, {}, {}},
                     {"block_column", "1", block_column, {}, {}},
                     {"largest_entry", "SI", largest_entry, {}, {}}};
-  add_summary(row, result);
+  result.summary = cells_of(row);
   return result;
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "study/result.hpp"
+#include "study/summary_row.hpp"
 
 namespace fw::study {
 
@@ -32,7 +32,6 @@ struct JacobianRow {
   double compression = none, largest_gain = none, worst_step = none, failed_runs = none;
 };
 
-/// Writes the row with the result's verdict and reason.
-void add_summary(const JacobianRow& row, CaseResult& result);
+void declare(SummaryRow& a, const JacobianRow& row);
 
 }  // namespace fw::study

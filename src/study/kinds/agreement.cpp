@@ -11,6 +11,7 @@
 #include "analysis/reference/converged_run.hpp"
 #include "analysis/reference/reference_cache.hpp"
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/measure/error_norms.hpp"
 #include "study/problem_spec.hpp"
 
@@ -18,19 +19,56 @@ namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 /// The keys of [agreement].
 struct Settings {
-  double error = 1e-8;          ///< relative: each method is refined until its estimate is below
-  double largest_error = 1e-3;  ///< relative: a method whose estimate stays above is not compared
-  std::int64_t most_steps = 8192;
+  double error = 1e-8;
+  double largest_error = 1e-3;
   std::int64_t fewest_steps = 16;
-  bool has_reference = true;  ///< a certified solution is compared as well
-
-  std::string text() const {
-    return fmt::format("error = {}\nlargest_error = {}\nmost_steps = {}\nfewest_steps = {}\nreference = {}\n",
-                       error, largest_error, most_steps, fewest_steps, has_reference);
-  }
+  std::int64_t most_steps = 8192;
+  bool has_reference = true;
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("error", s.error)
+        .unit("1")
+        .positive()
+        .quick()
+        .doc("relative: refined until the estimate is below"));
+  a(setting("largest_error", s.largest_error)
+        .unit("1")
+        .positive()
+        .doc("a method whose estimate stays above is named, but not compared"));
+  a(setting("fewest_steps", s.fewest_steps)
+        .integers(1, 1'000'000)
+        .doc("of runs with constant steps; adaptive runs may take 16 times as many"));
+  a(setting("most_steps", s.most_steps).integers(2, 1'000'000'000).quick_at_most(512).doc("likewise"));
+  a(setting("reference", s.has_reference).doc("the closed form or certified reference is compared as well"));
+}
+
+struct Spec {
+  MethodPatterns methods;
+  Settings settings;
+  std::vector<ProblemSpec> problems;
+  std::int64_t quick_problems = 2;
+};
+
+void declare(Archive& a, Spec& spec) {
+  declare(a, spec.methods);
+  a.section({"agreement", "How far methods are refined."}, spec.settings);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section([&] {
+    if (!a.is_description()) {
+      spec.quick_problems = static_cast<std::int64_t>(std::min<std::size_t>(spec.problems.size(), 2));
+    }
+    a(setting("problems", spec.quick_problems)
+          .at_least(1)
+          .default_text("at most 2")
+          .doc("how many of the problems, from the first one"));
+  });
+}
 
 /// Estimates are upper bounds in the limit of small steps; away from it they may be a little too small.
 constexpr double safety = 2.0;
@@ -50,6 +88,24 @@ struct Row {
   analysis::ConvergedRun run;
   bool compared = false;
 };
+
+/// The row of the summary.
+struct SummaryFigures {
+  std::string problem;
+  std::int64_t methods = 0, not_accurate = 0, not_applicable = 0, pairs = 0, disagreeing = 0;
+  double largest_difference = 0.0, largest_ratio = 0.0;
+};
+
+void declare(SummaryRow& a, const SummaryFigures& row) {
+  a("problem", "", row.problem, "its label");
+  a("methods", "1", row.methods, "solutions that are compared, with the reference");
+  a("not_accurate", "1", row.not_accurate, "methods whose estimate stays too large");
+  a("not_applicable", "1", row.not_applicable, "methods that cannot run on the problem");
+  a("pairs", "1", row.pairs, "compared");
+  a("disagreeing", "1", row.disagreeing, "pairs");
+  a("largest_difference", "1", row.largest_difference, "of the pairs compared");
+  a("largest_ratio", "1", row.largest_ratio, "of difference to expected difference");
+}
 
 class AgreementCase {
  public:
@@ -116,7 +172,7 @@ class AgreementCase {
   }
 
   void add_method(const Participant& participant) {
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
     const MethodInfo& info = participant.integrator->info();
     if (!why_not_applicable(info, *ivp().system).empty()) {
       ++not_applicable_;
@@ -125,7 +181,7 @@ class AgreementCase {
     analysis::RefinementGoal goal{.error = settings_.error,
                                   .fewest_steps = static_cast<std::uint64_t>(settings_.fewest_steps),
                                   .most_steps = static_cast<std::uint64_t>(settings_.most_steps),
-                                  .is_interrupted = [this] { return context_.is_interrupted(); }};
+                                  .stop = context_.stop};
     Row row;
     row.name = participant.call;
     row.family = info.family;
@@ -136,7 +192,7 @@ class AgreementCase {
       refused_.push_back(fmt::format("{}: {}", row.name, error.what()));
       row.run.error_estimate = std::numeric_limits<double>::infinity();
     }
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
     row.compared = row.run.error_estimate <= settings_.largest_error;
     if (!row.compared && (refused_.empty() || !refused_.back().starts_with(row.name + ": "))) {
       const std::string why = std::isfinite(row.run.error_estimate)
@@ -224,16 +280,14 @@ class AgreementCase {
     if (!problem_.problem.is_smooth) {
       result.reason += "; the forces have kinks or jumps, where errors and their estimates are irregular";
     }
-    result.summary = {{"problem", "", problem_.label},
-                      {"methods", "1", static_cast<std::int64_t>(compared)},
-                      {"not_accurate", "1", static_cast<std::int64_t>(not_compared_.size())},
-                      {"not_applicable", "1", not_applicable_},
-                      {"pairs", "1", pairs},
-                      {"disagreeing", "1", disagreeing},
-                      {"largest_difference", "1", largest_difference},
-                      {"largest_ratio", "1", largest_ratio},
-                      {"verdict", "", std::string(to_string(result.verdict))},
-                      {"reason", "", result.reason}};
+    result.summary = cells_of(SummaryFigures{.problem = problem_.label,
+                                             .methods = compared,
+                                             .not_accurate = static_cast<std::int64_t>(not_compared_.size()),
+                                             .not_applicable = not_applicable_,
+                                             .pairs = pairs,
+                                             .disagreeing = disagreeing,
+                                             .largest_difference = largest_difference,
+                                             .largest_ratio = largest_ratio});
   }
 
   void add_columns(CaseResult& result) const {
@@ -297,68 +351,59 @@ class AgreementCase {
   std::vector<std::int64_t> agrees_;
 };
 
-Settings read_settings(const CheckedTable& spec, bool quick, std::size_t& problems) {
-  Settings settings;
-  const CheckedTable table = spec.table_or_empty("agreement");
-  settings.error = table.number_or("error", settings.error, NumberRule::positive);
-  settings.largest_error = table.number_or("largest_error", settings.largest_error, NumberRule::positive);
-  settings.fewest_steps = table.integer_or("fewest_steps", settings.fewest_steps, 1, 1'000'000);
-  settings.most_steps = table.integer_or("most_steps", settings.most_steps, 2, 1'000'000'000);
-  settings.has_reference = table.boolean_or("reference", settings.has_reference);
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const double quick_error = shrunk.number_or("error", settings.error, NumberRule::positive);
-  const std::int64_t quick_steps =
-      shrunk.integer_or("most_steps", std::min<std::int64_t>(settings.most_steps, 512), 2, 1'000'000'000);
-  const auto quick_problems = static_cast<std::size_t>(
-      shrunk.integer_or("problems", static_cast<std::int64_t>(std::min<std::size_t>(problems, 2)), 1,
-                        static_cast<std::int64_t>(problems)));
+void check(const Settings& settings, const StudyInput& input) {
+  const CheckedTable table = input.section("agreement");
   if (settings.error > settings.largest_error) {
     table.fail("error", fmt::format("found {}, expected at most largest_error = {}", settings.error,
                                     settings.largest_error));
   }
-  if (2 * settings.fewest_steps > std::min(settings.most_steps, quick_steps)) {
-    table.fail("fewest_steps",
-               fmt::format("found {}, expected at most half of most_steps, which is {} ({} with --quick)",
-                           settings.fewest_steps, settings.most_steps, quick_steps));
+  if (2 * settings.fewest_steps > settings.most_steps) {
+    table.fail("fewest_steps", fmt::format("found {}, expected at most half of most_steps, which is {}{}",
+                                           settings.fewest_steps, settings.most_steps,
+                                           input.is_quick ? " with --quick" : ""));
   }
-  if (quick) {
-    settings.error = quick_error;
-    settings.most_steps = quick_steps;
-    problems = quick_problems;
-  }
-  return settings;
 }
 
-void read_agreement(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  std::vector<StudyProblem> problems = read_problems(spec, catalog, plan.warnings);
-  std::size_t count = problems.size();
-  const Settings settings = read_settings(spec, quick, count);
-  problems.resize(count);
+void plan_agreement(const Spec& spec, const StudyInput& input, Plan& plan) {
+  const Settings& settings = spec.settings;
+  check(settings, input);
+  const auto given = static_cast<std::int64_t>(spec.problems.size());
+  if (spec.quick_problems > given) {
+    input.section("quick").fail(
+        "problems", fmt::format("found {}, expected an integer from 1 to {}", spec.quick_problems, given));
+  }
+  std::vector<StudyProblem> problems = make_problems(spec.problems, input, plan.warnings);
+  if (input.is_quick) problems.resize(static_cast<std::size_t>(spec.quick_problems));
   auto participants = std::make_shared<std::vector<Participant>>();
   std::string calls;
-  for (const std::string& call : read_method_patterns(spec, catalog)) {
-    participants->push_back({call, catalog.method(call)});
+  for (const std::string& call : expanded(spec.methods, input)) {
+    participants->push_back({call, input.catalog.method(call)});
     calls += "method = " + call + "\n";
   }
   for (StudyProblem& entry : problems) {
     const auto problem = std::make_shared<const StudyProblem>(std::move(entry));
-    plan.cases.push_back({.id = group_name(problem->label),
-                          .identity = "agreement\n" + problem->identity + calls + settings.text(),
-                          .run = [problem, participants, settings](const RunContext& context) {
-                            return AgreementCase(*problem, *participants, settings, context).run();
-                          }});
+    plan.cases.push_back(
+        {.id = group_name(problem->label),
+         .identity = "agreement\n" + problem->identity + calls + settings::identity_text(settings),
+         .run = [problem, participants, settings](const RunContext& context) {
+           return AgreementCase(*problem, *participants, settings, context).run();
+         }});
   }
 }
 
 }  // namespace
 
 StudyKind agreement_kind() {
-  return {.name = "agreement",
-          .title = "Agreement of all methods",
-          .description =
-              "own schemes and foreign solvers on the same problems: difference of every pair against "
-              "what their error estimates allow",
-          .read = read_agreement};
+  return declared_kind<Spec>(
+      {.name = "agreement",
+       .title = "Agreement of all methods",
+       .description =
+           "own schemes and foreign solvers on the same problems: difference of every pair against "
+           "what their error estimates allow",
+       .summary = columns_of<SummaryFigures>(),
+       .verdict_meaning = "`holds`: no pair disagrees",
+       .reason_meaning = "names the worst pair and the methods not compared"},
+      plan_agreement);
 }
 
 }  // namespace fw::study

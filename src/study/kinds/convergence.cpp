@@ -10,31 +10,63 @@
 
 #include "analysis/fit/order_fit.hpp"
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/measure/error_norms.hpp"
 #include "study/problem_spec.hpp"
 #include "study/shared_problem.hpp"
-#include "study/stop_when_interrupted.hpp"
 
 namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
 /// The keys of [convergence].
 struct Settings {
-  double ratio = 1.5;          ///< of successive steps
-  std::int64_t levels = 9;     ///< steps per case; up to twice as many if these do not suffice for a fit
-  double start_error = 0.003;  ///< relative error at the coarsest step, found by halving
-  std::int64_t max_steps = 4'000'000;  ///< no run takes more steps
-  double tolerance = 0.1;              ///< |observed − expected order| that still holds
+  double ratio = 1.5;
+  std::int64_t levels = 9;
+  double start_error = 0.003;
+  std::int64_t max_steps = 4'000'000;
+  double tolerance = 0.1;
   double minimum_correlation = 0.999;
-
-  std::string text() const {
-    return fmt::format(
-        "ratio = {}\nlevels = {}\nstart_error = {}\nmax_steps = {}\ntolerance = {}\nminimum_correlation = "
-        "{}\n",
-        ratio, levels, start_error, max_steps, tolerance, minimum_correlation);
-  }
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("ratio", s.ratio).unit("1").above(1.0).quick().doc("of successive steps"));
+  a(setting("levels", s.levels)
+        .integers(6, 100)
+        .quick_at_most(6)
+        .doc("steps per case; up to twice as many if these do not suffice for a fit"));
+  a(setting("start_error", s.start_error)
+        .unit("1")
+        .positive()
+        .doc("relative error at the coarsest step, found by doubling the number of steps from 8"));
+  a(setting("max_steps", s.max_steps).integers(100, 10'000'000'000).doc("no run takes more steps"));
+  a(setting("tolerance", s.tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|observed − expected order\\| that holds"));
+  a(setting("minimum_correlation", s.minimum_correlation)
+        .unit("1")
+        .nonnegative()
+        .doc("least correlation that holds"));
+}
+
+struct Spec {
+  std::vector<std::string> methods;
+  Settings settings;
+  std::vector<ProblemSpec> problems;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(methods_setting(spec.methods));
+  a.section({"convergence", "How orders are measured."}, spec.settings);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section();
+}
 
 /// One run at one step.
 struct Level {
@@ -49,6 +81,44 @@ constexpr double rounding_floor = 2e-13;
 constexpr double slope_tolerance = 0.05;
 /// A reference has to be this much better than every error that is reported.
 constexpr double reference_margin = 0.01;
+
+/// A fitted order in the summary.
+struct RowFit {
+  double order = none, order_low = none, order_high = none, correlation = none;
+  std::int64_t points = 0;
+};
+
+/// The row of the summary.
+struct Row {
+  std::string problem, method;
+  std::int64_t expected_order = 0;
+  RowFit all{}, position{}, velocity{};
+  double reference_error = none;
+};
+
+void declare(SummaryRow& a, const Row& row) {
+  a("problem", "", row.problem, "its label");
+  a("method", "", row.method, "as in the study, with settings");
+  a("expected_order", "1", row.expected_order, "by theory");
+  a("order", "1", row.all.order,
+    "slope of log `error` over log `step`; NaN where there is no fit, like all that follows");
+  a("order_low", "1", row.all.order_low, "lower end of the 95 % interval");
+  a("order_high", "1", row.all.order_high, "upper end");
+  a("correlation", "1", row.all.correlation, "of the fit");
+  a("points", "1", row.all.points, "in the fit; 0 where there is no fit");
+  a("order_position", "1", row.position.order, "as `order`, of `error_position`; NaN for y' = f(t, y)");
+  a("order_low_position", "1", row.position.order_low, "lower end");
+  a("order_high_position", "1", row.position.order_high, "upper end");
+  a("correlation_position", "1", row.position.correlation, "of this fit");
+  a("points_position", "1", row.position.points, "in this fit");
+  a("order_velocity", "1", row.velocity.order, "as `order`, of `error_velocity`; NaN for y' = f(t, y)");
+  a("order_low_velocity", "1", row.velocity.order_low, "lower end");
+  a("order_high_velocity", "1", row.velocity.order_high, "upper end");
+  a("correlation_velocity", "1", row.velocity.correlation, "of this fit");
+  a("points_velocity", "1", row.velocity.points, "in this fit");
+  a("reference_error", "SI", row.reference_error,
+    "bound on the error of the reference solution, largest component; NaN without a reference");
+}
 
 /// The case problem × method.
 class ConvergenceCase {
@@ -83,11 +153,7 @@ class ConvergenceCase {
   double length() const { return ivp().t1 - ivp().t0; }
   bool is_second_order() const { return ivp().system->second_order() != nullptr; }
 
-  int expected_order() const {
-    const SecondOrderSystem* system = ivp().system->second_order();
-    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
-    return has_velocity_forces ? integrator_.info().order_with_velocity_forces : integrator_.info().order;
-  }
+  int expected_order() const { return order_on(integrator_.info(), *ivp().system); }
 
   bool find_reference() {
     reference_ = shared_.reference(context_);
@@ -100,10 +166,9 @@ class ConvergenceCase {
   std::optional<Level> run_level(std::int64_t steps) {
     Level level;
     level.step = length() / static_cast<double>(steps);
-    StopWhenInterrupted observer(context_);
-    const Solution solution =
-        integrator_.solve(ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
-    if (context_.is_interrupted()) throw Interrupted{};
+    NullObserver observer;
+    const Solution solution = context_.solve(
+        integrator_, ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
     last_status_ = solution.status;
     if (!solution.status.ok()) return std::nullopt;
     level.error = measure_error(ivp(), solution.state, reference_.states.front(), scale_);
@@ -207,7 +272,7 @@ class ConvergenceCase {
     result.verdict = verdict;
     result.reason = std::move(reason);
     add_columns(result);
-    add_summary(result);
+    result.summary = cells_of(row());
     return result;
   }
 
@@ -259,28 +324,24 @@ class ConvergenceCase {
                        scale_.position, scale_.velocity);
   }
 
-  void add_summary(CaseResult& result) const {
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    const bool has_reference = !reference_.states.empty();
-    const auto add_fit = [&](const std::string& suffix, const std::optional<analysis::OrderFit>& order_fit) {
-      const bool valid = order_fit && order_fit->valid;
-      result.summary.push_back({"order" + suffix, "1", valid ? order_fit->order : none});
-      result.summary.push_back({"order_low" + suffix, "1", valid ? order_fit->order_low : none});
-      result.summary.push_back({"order_high" + suffix, "1", valid ? order_fit->order_high : none});
-      result.summary.push_back({"correlation" + suffix, "1", valid ? order_fit->correlation : none});
-      result.summary.push_back(
-          {"points" + suffix, "1", static_cast<std::int64_t>(order_fit ? order_fit->points : 0)});
+  Row row() const {
+    const auto figure = [](const std::optional<analysis::OrderFit>& order_fit) {
+      RowFit seen;
+      if (!order_fit) return seen;
+      seen.points = static_cast<std::int64_t>(order_fit->points);
+      if (!order_fit->valid) return seen;
+      seen.order = order_fit->order;
+      seen.order_low = order_fit->order_low;
+      seen.order_high = order_fit->order_high;
+      seen.correlation = order_fit->correlation;
+      return seen;
     };
-    result.summary = {{"problem", "", problem_.label},
-                      {"method", "", call_},
-                      {"expected_order", "1", static_cast<std::int64_t>(expected_order())}};
-    add_fit("", fit_);
-    add_fit("_position", fit_position_);
-    add_fit("_velocity", fit_velocity_);
-    result.summary.push_back(
-        {"reference_error", "SI", has_reference ? reference_.states.front().largest_error() : none});
-    result.summary.push_back({"verdict", "", std::string(to_string(result.verdict))});
-    result.summary.push_back({"reason", "", result.reason});
+    Row row{.problem = problem_.label, .method = call_, .expected_order = expected_order()};
+    row.all = figure(fit_);
+    row.position = figure(fit_position_);
+    row.velocity = figure(fit_velocity_);
+    if (!reference_.states.empty()) row.reference_error = reference_.states.front().largest_error();
+    return row;
   }
 
   const SharedProblem& shared_;
@@ -297,48 +358,26 @@ class ConvergenceCase {
   std::optional<analysis::OrderFit> fit_position_, fit_velocity_;
 };
 
-Settings read_settings(const CheckedTable& spec, bool quick) {
-  Settings settings;
-  const CheckedTable table = spec.table_or_empty("convergence");
-  settings.ratio = table.number_or("ratio", settings.ratio, NumberRule::positive);
-  if (settings.ratio <= 1.0)
-    table.fail("ratio", fmt::format("found {}, expected more than 1", settings.ratio));
-  settings.levels = table.integer_or("levels", settings.levels, 6, 100);
-  settings.start_error = table.number_or("start_error", settings.start_error, NumberRule::positive);
-  settings.max_steps = table.integer_or("max_steps", settings.max_steps, 100, 10'000'000'000);
-  settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
-  settings.minimum_correlation =
-      table.number_or("minimum_correlation", settings.minimum_correlation, NumberRule::nonnegative);
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t quick_levels =
-      shrunk.integer_or("levels", std::min<std::int64_t>(settings.levels, 6), 6, 100);
-  const double quick_ratio = shrunk.number_or("ratio", settings.ratio, NumberRule::positive);
-  if (quick_ratio <= 1.0) shrunk.fail("ratio", fmt::format("found {}, expected more than 1", quick_ratio));
-  if (quick) {
-    settings.levels = quick_levels;
-    settings.ratio = quick_ratio;
-  }
-  return settings;
-}
-
-void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const Settings settings = read_settings(spec, quick);
-  const std::vector<std::string> methods = read_methods(spec, catalog);
-  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
+void plan_convergence(const Spec& spec, const StudyInput& input, Plan& plan) {
+  const Settings& settings = spec.settings;
+  const std::string identity = settings::identity_text(settings);
+  const std::vector<std::string>& methods = checked_methods(spec.methods, input.file, input.catalog);
+  for (StudyProblem& entry : make_problems(spec.problems, input, plan.warnings)) {
     const auto problem = std::make_shared<const SharedProblem>(std::move(entry));
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
-      const std::shared_ptr<const Integrator> integrator = catalog.method(call);
+      const std::shared_ptr<const Integrator> integrator = input.catalog.method(call);
       if (!integrator->info().has_fixed_step) {
-        spec.fail("methods", {i},
-                  fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
+        input.file.fail(
+            "methods", {i},
+            fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
       }
-      plan.cases.push_back({.id = group_name(problem->entry().label + "-" + call),
-                            .identity = "convergence\n" + problem->entry().identity + "method = " + call +
-                                        "\n" + settings.text(),
-                            .run = [problem, call, integrator, settings](const RunContext& context) {
-                              return ConvergenceCase(*problem, call, *integrator, settings, context).run();
-                            }});
+      plan.cases.push_back(
+          {.id = group_name(problem->entry().label + "-" + call),
+           .identity = "convergence\n" + problem->entry().identity + "method = " + call + "\n" + identity,
+           .run = [problem, call, integrator, settings](const RunContext& context) {
+             return ConvergenceCase(*problem, call, *integrator, settings, context).run();
+           }});
     }
   }
 }
@@ -346,11 +385,15 @@ void read_convergence(const CheckedTable& spec, const Catalog& catalog, bool qui
 }  // namespace
 
 StudyKind convergence_kind() {
-  return {.name = "convergence",
-          .title = "Observed order of accuracy",
-          .description =
-              "error against step for every method on every problem, fitted order with a 95 % interval",
-          .read = read_convergence};
+  return declared_kind<Spec>(
+      {.name = "convergence",
+       .title = "Observed order of accuracy",
+       .description =
+           "error against step for every method on every problem, fitted order with a 95 % interval",
+       .summary = columns_of<Row>(),
+       .verdict_meaning = "",
+       .reason_meaning = ""},
+      plan_convergence);
 }
 
 }  // namespace fw::study

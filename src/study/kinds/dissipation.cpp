@@ -10,33 +10,29 @@
 
 #include "analysis/fit/measured_oscillation.hpp"
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/problem_spec.hpp"
 
 namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [dissipation].
 struct Settings {
-  double mass = 2.0, stiffness = 7.0;    ///< of the spring [kg], [N/m]
-  double from = 0.05, to = 20.0;         ///< range of z = ωh
-  std::int64_t count = 61;               ///< values of z, geometric
-  double periods = 10.0;                 ///< in the window of a fit
-  std::int64_t transient_steps = 400;    ///< before it
-  double shown_steps_per_period = 20.0;  ///< of the motion that is kept and of the summary's figures
+  double mass = 2.0, stiffness = 7.0;
+  double from = 0.05, to = 20.0;
+  std::int64_t count = 61;
+  double periods = 10.0;
+  std::int64_t transient_steps = 400;
+  double shown_steps_per_period = 20.0;
   double shown_periods = 5.0;
-  double infinity = 1e5;    ///< the ωh that stands for infinity in runs
-  double tolerance = 1e-8;  ///< of |λ_measured − λ|/max(1, |λ|)
-
-  std::string text() const {
-    return fmt::format(
-        "mass = {}\nstiffness = {}\nfrom = {}\nto = {}\ncount = {}\nperiods = {}\ntransient_steps = {}\n"
-        "shown_steps_per_period = {}\nshown_periods = {}\ninfinity = {}\ntolerance = {}\n",
-        mass, stiffness, from, to, count, periods, transient_steps, shown_steps_per_period, shown_periods,
-        infinity, tolerance);
-  }
+  double infinity = 1e5;
+  double tolerance = 1e-8;
 
   std::vector<double> grid() const {
     std::vector<double> z;
@@ -48,6 +44,68 @@ struct Settings {
   /// z of the motion that is kept.
   double shown() const { return 2.0 * std::numbers::pi / shown_steps_per_period; }
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("mass", s.mass).unit("kg").positive().doc("of the spring's particle"));
+  a(setting("stiffness", s.stiffness).unit("N/m").positive().doc("of the spring"));
+  a(setting("from", s.from).unit("1").at_least_number(1e-3).doc("smallest z = ωh"));
+  a(setting("to", s.to).unit("1").positive().doc("largest z"));
+  a(setting("count", s.count)
+        .integers(3, 10'000)
+        .quick_at_most(13)
+        .doc("values of z, in a geometric sequence"));
+  a(setting("periods", s.periods)
+        .unit("1")
+        .positive()
+        .doc("of the exact oscillation in a fit; at least 32 steps, at most 1 000 000 at the finest step"));
+  a(setting("transient_steps", s.transient_steps).integers(0, 100'000).doc("before the fit"));
+  a(setting("shown_steps_per_period", s.shown_steps_per_period)
+        .unit("1")
+        .positive()
+        .doc("of the motion that is stored, and of the figures in the summary"));
+  a(setting("shown_periods", s.shown_periods)
+        .unit("1")
+        .positive()
+        .doc("length of that motion, at most 100 000 steps"));
+  a(setting("infinity", s.infinity).unit("1").positive().doc("the ωh at which ρ(∞) is measured"));
+  a(setting("tolerance", s.tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|λ_measured − λ\\|/max(1, \\|λ\\|) that holds"));
+}
+
+struct Spec {
+  std::vector<std::string> methods;
+  Settings settings;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(methods_setting(spec.methods));
+  a.section({"dissipation", "The spring, and the range of z = ωh."}, spec.settings);
+  a.quick_section();
+}
+
+/// The row of the summary.
+struct Row {
+  std::string method;
+  double steps_per_period = 0.0, damping_ratio = 0.0, period_error = 0.0;
+  double radius_at_infinity = 0.0, measured_radius_at_infinity = 0.0, largest_difference = 0.0;
+  std::int64_t compared = 0;
+};
+
+void declare(SummaryRow& a, const Row& row) {
+  a("method", "", row.method, "as in the study, with settings");
+  a("steps_per_period", "1", row.steps_per_period, "at which the next two figures are given");
+  a("damping_ratio", "1", row.damping_ratio, "by theory, of the run where there is none");
+  a("period_error", "1", row.period_error, "likewise");
+  a("radius_at_infinity", "1", row.radius_at_infinity,
+    "limit of the spectral radius; inf if it grows, NaN without theory");
+  a("measured_radius_at_infinity", "1", row.measured_radius_at_infinity,
+    "of a run; NaN where the limit is not finite");
+  a("largest_difference", "1", row.largest_difference,
+    "of the measured factor from the predicted one; of symplectic foreign solvers of its modulus from 1");
+  a("compared", "1", row.compared, "values of ωh");
+}
 
 /// A fit with a larger relative residual saw more than one pair of factors.
 constexpr double largest_residual = 1e-9;
@@ -65,17 +123,12 @@ bool is_measurable(const analysis::NumericalOscillation& theory, std::int64_t tr
 
 class Motion final : public Observer {
  public:
-  explicit Motion(const RunContext& context) : context_(context) {}
-
   bool observe(const StepView& view) override {
     times.push_back(view.time);
     positions.push_back(view.state[0]);
-    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12 && !context_.is_interrupted();
+    return std::isfinite(view.state[0]) && std::abs(view.state[0]) < 1e12;
   }
   std::vector<double> times, positions;
-
- private:
-  const RunContext& context_;
 };
 
 class DissipationCase {
@@ -88,8 +141,7 @@ class DissipationCase {
         factors_(theory),
         spring_(spring),
         settings_(settings),
-        context_(context),
-        motion_(context) {}
+        context_(context) {}
 
   CaseResult run() {
     predict();
@@ -107,7 +159,7 @@ class DissipationCase {
   analysis::OscillationRun oscillation_run() const {
     return {.periods = settings_.periods,
             .transient_steps = static_cast<int>(settings_.transient_steps),
-            .is_interrupted = [this] { return context_.is_interrupted(); }};
+            .stop = context_.stop};
   }
 
   void predict() {
@@ -124,7 +176,7 @@ class DissipationCase {
     for (const double z : z_) {
       analysis::MeasuredOscillation found = analysis::measure_oscillation(
           integrator_, settings_.mass, settings_.stiffness, z, oscillation_run());
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       if (!found.status.ok() && status_.ok()) status_ = found.status;
       if (!(found.residual <= largest_residual)) found.points = 0;
       measured_.push_back(found);
@@ -140,7 +192,7 @@ class DissipationCase {
           integrator_, settings_.mass, settings_.stiffness, settings_.infinity, oscillation_run());
     }
     follow_motion();
-    if (context_.is_interrupted()) throw Interrupted{};
+    context_.check();
   }
 
   static double unwrapped(double angle, double expected) {
@@ -155,9 +207,9 @@ class DissipationCase {
     const double h = settings_.shown() / omega;
     Ivp ivp = spring_.ivp;
     ivp.t1 = ivp.t0 + std::round(settings_.shown_periods * settings_.shown_steps_per_period) * h;
-    integrator_.solve(ivp, FixedStep{.step = h}, motion_);
+    context_.solve(integrator_, ivp, FixedStep{.step = h}, motion_);
     for (const double t : motion_.times) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       exact_positions_.push_back(static_cast<double>(spring_.exact(Float128(t)).front()));
     }
   }
@@ -265,16 +317,14 @@ class DissipationCase {
   }
 
   void add_summary(CaseResult& result) const {
-    result.summary = {{"method", "", call_},
-                      {"steps_per_period", "1", settings_.shown_steps_per_period},
-                      {"damping_ratio", "1", shown_damping()},
-                      {"period_error", "1", shown_period_error()},
-                      {"radius_at_infinity", "1", radius_at_infinity_},
-                      {"measured_radius_at_infinity", "1", measured_radius_at_infinity_},
-                      {"largest_difference", "1", largest_difference_},
-                      {"compared", "1", compared_},
-                      {"verdict", "", std::string(to_string(result.verdict))},
-                      {"reason", "", result.reason}};
+    result.summary = cells_of(Row{.method = call_,
+                                  .steps_per_period = settings_.shown_steps_per_period,
+                                  .damping_ratio = shown_damping(),
+                                  .period_error = shown_period_error(),
+                                  .radius_at_infinity = radius_at_infinity_,
+                                  .measured_radius_at_infinity = measured_radius_at_infinity_,
+                                  .largest_difference = largest_difference_,
+                                  .compared = compared_});
   }
 
   /// Where factors coincide, their growth per step is approached like a power of the number of steps.
@@ -304,21 +354,8 @@ class DissipationCase {
 /// Steps of the motion that is kept, and of the window of a fit.
 constexpr double most_shown_steps = 1e5, most_window_steps = 1e6;
 
-Settings read_settings(const CheckedTable& spec, bool quick) {
-  Settings s;
-  const CheckedTable table = spec.table_or_empty("dissipation");
-  s.mass = table.number_or("mass", s.mass, NumberRule::positive);
-  s.stiffness = table.number_or("stiffness", s.stiffness, NumberRule::positive);
-  s.from = table.number_or("from", s.from, NumberRule::positive);
-  s.to = table.number_or("to", s.to, NumberRule::positive);
+void check(const Settings& s, const CheckedTable& table) {
   if (s.to <= s.from) table.fail("to", fmt::format("found {}, expected more than from = {}", s.to, s.from));
-  if (s.from < 1e-3) table.fail("from", fmt::format("found {}, expected at least 0.001", s.from));
-  s.count = table.integer_or("count", s.count, 3, 10'000);
-  s.periods = table.number_or("periods", s.periods, NumberRule::positive);
-  s.transient_steps = table.integer_or("transient_steps", s.transient_steps, 0, 100'000);
-  s.shown_steps_per_period =
-      table.number_or("shown_steps_per_period", s.shown_steps_per_period, NumberRule::positive);
-  s.shown_periods = table.number_or("shown_periods", s.shown_periods, NumberRule::positive);
   if (s.shown_steps_per_period * s.shown_periods < 1.0) {
     table.fail("shown_periods", "found less than one step in all, expected more");
   }
@@ -334,33 +371,29 @@ Settings read_settings(const CheckedTable& spec, bool quick) {
                fmt::format("found {} periods of {:.3g} steps, expected at most {:.0f} steps in a window",
                            s.periods, 2.0 * std::numbers::pi / finest, most_window_steps));
   }
-  s.infinity = table.number_or("infinity", s.infinity, NumberRule::positive);
-  s.tolerance = table.number_or("tolerance", s.tolerance, NumberRule::positive);
-  const std::int64_t quick_count =
-      spec.table_or_empty("quick").integer_or("count", std::min<std::int64_t>(s.count, 13), 3, 10'000);
-  if (quick) s.count = quick_count;
-  return s;
 }
 
-void read_dissipation(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const Settings settings = read_settings(spec, quick);
+void plan_dissipation(const Spec& spec, const StudyInput& input, Plan& plan) {
+  const Settings& settings = spec.settings;
+  check(settings, input.section("dissipation"));
+  const Catalog& catalog = input.catalog;
   const auto spring = std::make_shared<const Problem>(
       catalog.problem("harmonic_oscillator", {{"mass", settings.mass}, {"stiffness", settings.stiffness}}));
-  const std::vector<std::string> methods = read_methods(spec, catalog);
+  const std::vector<std::string>& methods = checked_methods(spec.methods, input.file, catalog);
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const std::string& call = methods[i];
     const std::shared_ptr<const Integrator> integrator = catalog.method(call);
     if (!integrator->info().has_fixed_step) {
-      spec.fail("methods", {i},
-                fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
+      input.file.fail("methods", {i},
+                      fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
     }
     if (const std::string why = why_not_applicable(integrator->info(), *spring->ivp.system); !why.empty()) {
-      spec.fail("methods", {i}, fmt::format("\"{}\" on a single spring: {}", call, why));
+      input.file.fail("methods", {i}, fmt::format("\"{}\" on a single spring: {}", call, why));
     }
     plan.cases.push_back(
         {.id = group_name(call),
-         .identity = "dissipation\nmethod = " + call + "\n" + settings.text(),
-         .run = [call, integrator, theory = catalog.oscillator_theory(call), spring,
+         .identity = "dissipation\nmethod = " + call + "\n" + settings::identity_text(settings),
+         .run = [call, integrator, theory = analysis::oscillator_factors(catalog.theory(call)), spring,
                  settings](const RunContext& context) {
            return DissipationCase(call, *integrator, theory, *spring, settings, context).run();
          }});
@@ -370,11 +403,15 @@ void read_dissipation(const CheckedTable& spec, const Catalog& catalog, bool qui
 }  // namespace
 
 StudyKind dissipation_kind() {
-  return {.name = "dissipation",
-          .title = "Numerical damping and period error",
-          .description =
-              "damping ratio and period error over w h, from the coefficients and from runs of a spring",
-          .read = read_dissipation};
+  return declared_kind<Spec>(
+      {.name = "dissipation",
+       .title = "Numerical damping and period error",
+       .description =
+           "damping ratio and period error over w h, from the coefficients and from runs of a spring",
+       .summary = columns_of<Row>(),
+       .verdict_meaning = "`holds`: run and coefficients agree",
+       .reason_meaning = ""},
+      plan_dissipation);
 }
 
 }  // namespace fw::study

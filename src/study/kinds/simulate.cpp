@@ -8,12 +8,16 @@
 
 #include "core/error.hpp"
 #include "record/frame_selector.hpp"
+#include "settings/identity_text.hpp"
 #include "study/kinds/step_construction.hpp"
 #include "study/problem_spec.hpp"
 
 namespace fw::study {
 
 namespace {
+
+using settings::Archive;
+using settings::setting;
 
 /// Collects the frames of one trajectory.
 class FrameColumns final : public record::FrameSink {
@@ -27,18 +31,6 @@ class FrameColumns final : public record::FrameSink {
 
  private:
   std::vector<double> times_, states_;
-};
-
-/// A frame selector that stops when the user interrupts.
-class InterruptibleFrames final : public Observer {
- public:
-  InterruptibleFrames(record::FrameSelector& frames, const RunContext& context)
-      : frames_(frames), context_(context) {}
-  bool observe(const StepView& view) override { return frames_.observe(view) && !context_.is_interrupted(); }
-
- private:
-  record::FrameSelector& frames_;
-  const RunContext& context_;
 };
 
 constexpr std::int64_t exact_frames = 401;
@@ -58,17 +50,22 @@ void add_exact(const StudyProblem& entry, CaseResult& result) {
   result.columns.push_back({"exact_state", "SI", states, {times.size(), size}, {}});
 }
 
-std::vector<SummaryCell> summary_row(const std::string& problem, const std::string& method, double step,
-                                     double end_time, double end_error, const Status& status,
-                                     const CaseResult& result) {
-  return {{"problem", "", problem},
-          {"method", "", method},
-          {"step", "s", step},
-          {"end_time", "s", end_time},
-          {"end_error", "SI", end_error},
-          {"status", "", std::string(to_string(status.code))},
-          {"verdict", "", std::string(to_string(result.verdict))},
-          {"reason", "", result.reason}};
+/// The row of the summary.
+struct Row {
+  std::string problem, method;
+  double step = std::numeric_limits<double>::quiet_NaN();
+  double end_time = std::numeric_limits<double>::quiet_NaN();
+  double end_error = std::numeric_limits<double>::quiet_NaN();
+  Status status{};
+};
+
+void declare(SummaryRow& a, const Row& row) {
+  a("problem", "", row.problem, "its label");
+  a("method", "", row.method, "as in the study; `vector field` in that case");
+  a("step", "s", row.step, "NaN if the method chooses its steps, and of the vector field");
+  a("end_time", "s", row.end_time, "where the run ended; NaN of the vector field");
+  a("end_error", "SI", row.end_error, "‖y − exact‖₂ at the end; NaN without closed form or end");
+  a("status", "", to_string(row.status.code), "`success`, or code of why the solver stopped");
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
@@ -77,9 +74,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
   record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
-  InterruptibleFrames observer(selector, context);
-  const Solution solution = integrator.solve(ivp, control, observer);
-  if (context.is_interrupted()) throw Interrupted{};
+  const Solution solution = context.solve(integrator, ivp, control, selector);
 
   CaseResult result;
   result.verdict = solution.status.ok() ? Verdict::holds : Verdict::fails;
@@ -113,7 +108,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = summary_row(entry.label, call, step, solution.time, end_error, solution.status, result);
+  result.summary = cells_of(Row{entry.label, call, step, solution.time, end_error, solution.status});
   return result;
 }
 
@@ -157,26 +152,90 @@ CaseResult sample_field(const StudyProblem& entry, const FieldGrid& grid) {
   result.columns = {{"field_t", "s", times, {}, {}},
                     {"field_y", "SI", states, {times.size(), size}, {}},
                     {"field_dydt", "SI/s", slopes, {times.size(), size}, {}}};
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  result.summary = summary_row(entry.label, "vector field", none, none, none, {}, result);
+  result.summary = cells_of(Row{.problem = entry.label, .method = "vector field"});
   return result;
 }
 
-FieldGrid read_field(const CheckedTable& table, const Ivp& ivp) {
-  FieldGrid grid{table.numbers("lower"), table.numbers("upper"), table.integers("counts", 2, 1000), {ivp.t0}};
-  if (table.has("times")) {
-    grid.times = table.numbers("times");
-    if (grid.times.empty()) table.fail("times", "found an empty list, expected at least one time");
-    if (ivp.system->size() == 1)
-      table.fail("times", "found with one unknown, whose grid has the time as an axis");
+/// The keys of [vector_field].
+struct FieldSpec {
+  std::vector<double> lower, upper;
+  std::vector<std::int64_t> counts;
+  std::optional<std::vector<double>> times;
+};
+
+void declare(Archive& a, FieldSpec& field) {
+  a(setting("lower", field.lower)
+        .required()
+        .entries(2)
+        .doc("corner of the grid: (t, y) for one unknown; (y₁, y₂) for two"));
+  a(setting("upper", field.upper).required().entries(2).doc("the opposite corner"));
+  a(setting("counts", field.counts).required().entries(2).integers(2, 1000).doc("points along each axis"));
+  a(setting("times", field.times)
+        .unit("s")
+        .not_empty()
+        .default_text("the start")
+        .doc("of two unknowns: when, for fields that change with time"));
+}
+
+/// Tolerances of methods that choose their own steps.
+struct Tolerances {
+  double relative = 1e-8, absolute = 1e-10;
+};
+
+void declare(Archive& a, Tolerances& tolerances) {
+  a(setting("relative", tolerances.relative)
+        .unit("1")
+        .positive()
+        .doc("of methods that choose their own steps"));
+  a(setting("absolute", tolerances.absolute).unit("SI").positive().doc("likewise"));
+}
+
+struct Spec {
+  std::vector<std::string> methods;
+  std::optional<std::vector<double>> steps;
+  std::int64_t frames = 101;
+  std::int64_t construction_steps = 0;
+  Tolerances tolerances;
+  std::optional<FieldSpec> field;
+  std::vector<ProblemSpec> problems;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(methods_setting(spec.methods));
+  a(setting("steps", spec.steps)
+        .unit("s")
+        .positive()
+        .default_text("required if a method has a fixed step")
+        .doc("of `verlet*`, the interval has to be a whole number of steps"));
+  a(setting("frames", spec.frames)
+        .integers(2, 10'000'000)
+        .quick_at_most(101)
+        .doc("states that are stored, from start to end inclusive"));
+  a(setting("construction_steps", spec.construction_steps)
+        .integers(0, 1000)
+        .doc("of a scalar equation: how so many first steps come about (slopes at both ends, solutions "
+             "through "
+             "both), for plots"));
+  a.section({"tolerances", "Of methods that choose their own steps."}, spec.tolerances);
+  a.optional_section({"vector_field",
+                      "Samples of ẏ = f(t, y) of the first problem, which must have one or two "
+                      "unknowns, for plots."},
+                     spec.field);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section();
+}
+
+FieldGrid field_grid(const FieldSpec& field, const CheckedTable& table, const Ivp& ivp) {
+  if (field.times && ivp.system->size() == 1)
+    table.fail("times", "found with one unknown, whose grid has the time as an axis");
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (field.lower[axis] >= field.upper[axis]) {
+      table.fail("upper", {axis},
+                 fmt::format("found {}, expected more than lower[{}] = {}", field.upper[axis], axis,
+                             field.lower[axis]));
+    }
   }
-  const auto check = [&](const char* key, std::size_t found) {
-    if (found != 2) table.fail(key, fmt::format("found {} entries, expected 2", found));
-  };
-  check("lower", grid.lower.size());
-  check("upper", grid.upper.size());
-  check("counts", grid.counts.size());
-  return grid;
+  return {field.lower, field.upper, field.counts, field.times.value_or(std::vector<double>{ivp.t0})};
 }
 
 /// Throws InputError where the method cannot go through the interval with this step.
@@ -188,23 +247,18 @@ void check_step(const MethodInfo& info, const Ivp& ivp, double step) {
   }
 }
 
-void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const std::vector<std::string> methods = read_methods(spec, catalog);
-  const std::vector<double> steps =
-      spec.has("steps") ? spec.numbers("steps", NumberRule::positive) : std::vector<double>{};
-  const CheckedTable tolerances = spec.table_or_empty("tolerances");
-  const AdaptiveStep adaptive{
-      .relative_tolerance = tolerances.number_or("relative", 1e-8, NumberRule::positive),
-      .absolute_tolerance = tolerances.number_or("absolute", 1e-10, NumberRule::positive)};
-  const auto all_frames = spec.integer_or("frames", 101, 2, 10'000'000);
-  const auto quick_frames = spec.table_or_empty("quick").integer_or(
-      "frames", std::min<std::int64_t>(all_frames, 101), 2, 10'000'000);
-  const auto frames = static_cast<std::uint64_t>(quick ? quick_frames : all_frames);
-
-  const std::int64_t construction = spec.integer_or("construction_steps", 0, 0, 1000);
+void plan_simulate(const Spec& study, const StudyInput& input, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  const Catalog& catalog = input.catalog;
+  const std::vector<std::string>& methods = checked_methods(study.methods, spec, catalog);
+  const std::vector<double> steps = study.steps.value_or(std::vector<double>());
+  const AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
+                              .absolute_tolerance = study.tolerances.absolute};
+  const auto frames = static_cast<std::uint64_t>(study.frames);
+  const std::int64_t construction = study.construction_steps;
 
   std::shared_ptr<const StudyProblem> first;
-  for (StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
+  for (StudyProblem& entry : make_problems(study.problems, input, plan.warnings)) {
     const auto problem = std::make_shared<const StudyProblem>(std::move(entry));
     if (!first) first = problem;
     if (construction > 0 && problem->problem.ivp.system->size() != 1) {
@@ -249,26 +303,31 @@ void read_simulate(const CheckedTable& spec, const Catalog& catalog, bool quick,
       }
     }
   }
-  if (spec.has("vector_field")) {
+  if (study.field) {
     const CheckedTable table = spec.table("vector_field");
-    const FieldGrid grid = read_field(table, first->problem.ivp);
     if (first->problem.ivp.system->size() > 2) {
       throw InputError(fmt::format("{}: the vector field of \"{}\" has {} components, expected 1 or 2",
                                    table.where(), first->label, first->problem.ivp.system->size()));
     }
-    plan.cases.push_back({.id = "vector_field",
-                          .identity = "vector field\n" + first->identity + table.to_toml_text(),
-                          .run = [first, grid](const RunContext&) { return sample_field(*first, grid); }});
+    const FieldGrid grid = field_grid(*study.field, table, first->problem.ivp);
+    plan.cases.push_back(
+        {.id = "vector_field",
+         .identity = "vector field\n" + first->identity + settings::identity_text(*study.field),
+         .run = [first, grid](const RunContext&) { return sample_field(*first, grid); }});
   }
 }
 
 }  // namespace
 
 StudyKind simulate_kind() {
-  return {.name = "simulate",
-          .title = "Trajectories",
-          .description = "states over time for every method, step and problem, with the exact solution",
-          .read = read_simulate};
+  return declared_kind<Spec>(
+      {.name = "simulate",
+       .title = "Trajectories",
+       .description = "states over time for every method, step and problem, with the exact solution",
+       .summary = columns_of<Row>(),
+       .verdict_meaning = "`holds`: reached the end",
+       .reason_meaning = ""},
+      plan_simulate);
 }
 
 }  // namespace fw::study

@@ -19,6 +19,9 @@ namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 using Value = decltype(TomlAssignment::value);
 
 /// One key of the inner study that takes several values.
@@ -55,7 +58,7 @@ std::vector<std::string> texts_of(const std::vector<Value>& values, const Checke
 /// A column has one type: numbers are floating-point numbers, whether or not a value is whole.
 SummaryCell cell_of(const Parameter& parameter, std::size_t index) {
   const Value& value = parameter.values[index];
-  SummaryCell cell{"parameter_" + parameter.name, parameter.unit, parameter.texts[index]};
+  SummaryCell cell{std::string(parameter_prefix) + parameter.name, parameter.unit, parameter.texts[index]};
   if (const auto* number = std::get_if<double>(&value)) cell.value = *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) cell.value = static_cast<double>(*whole);
   return cell;
@@ -68,48 +71,102 @@ Value number_value(double number) {
   return number;
 }
 
-bool holds_strings(const CheckedTable& section) {
-  try {
-    section.strings("values");
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
+/// One section [[parameter]].
+struct ParameterSpec {
+  std::string path;
+  std::optional<std::string> name;
+  std::string unit = "1";
+  std::optional<settings::NumbersOrStrings> values;
+  ParameterValues sequence;
+  std::optional<std::vector<std::string>> scene_texts;
+};
+
+void declare(Archive& a, ParameterSpec& parameter) {
+  a(setting("path", parameter.path)
+        .required()
+        .doc("of the key in `[study]`, such as `problem[0].parameters.stiffness` or `energy.step_count`"));
+  a(setting("name", parameter.name)
+        .default_text("the last key of the path")
+        .doc("of the column `parameter_NAME` and in the names of cases: letters, digits, _ and -"));
+  a(setting("unit", parameter.unit).doc("of the column; strings have none"));
+  a.one_of(
+      {{"values",
+        [&] { a(setting("values", parameter.values).not_empty().doc("numbers or strings, all different")); }},
+       {"from", [&] { declare_sequence(a, parameter.sequence); }}});
+  a(setting("scene_texts", parameter.scene_texts)
+        .default_text("the texts of the scenes")
+        .doc("of a path that ends in `.scene`: the scenes themselves, which go before the files; a result "
+             "file "
+             "keeps them in its `spec`"));
+}
+
+struct Spec {
+  std::vector<ParameterSpec> parameters;
+  std::vector<std::string> quantities;
+  std::int64_t quick_values = 2;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(setting("quantities", spec.quantities)
+        .selects_cases()
+        .doc("columns of the summary that the plot shows; none: the first number that varies"));
+  a.sections({.name = "parameter",
+              .doc = "A key of the inner study that takes several values.",
+              .is_required = true},
+             spec.parameters);
+  a.free_section({.name = "study",
+                  .doc = "The study that runs at every point, of any kind but `sweep`; without `title`.",
+                  .is_required = true});
+  a.quick_section([&] {
+    a(setting("values", spec.quick_values)
+          .integers(1, 10'000)
+          .doc("at most so many values per parameter, first and last among them; the inner study's own "
+               "`[study.quick]` counts as well"));
+  });
 }
 
 /// The resolved scenes of a parameter that names their files; the specification keeps them as `scene_texts`.
-std::vector<std::string> read_scenes(const CheckedTable& section, const std::vector<Value>& files) {
-  std::vector<std::string> scenes;
-  if (!section.has("scene_texts")) {
-    const std::filesystem::path directory = std::filesystem::path(section.source_name()).parent_path();
-    for (std::size_t k = 0; k < files.size(); ++k) {
-      const auto* file = std::get_if<std::string>(&files[k]);
-      if (file == nullptr) section.fail("values", {k}, "expected the file name of a scene");
-      scenes.push_back(scene::read_scene(directory / *file).resolved_toml);
+std::vector<std::string> scenes_of(const ParameterSpec& spec, const CheckedTable& section,
+                                   const std::vector<Value>& files, TomlTree resolved) {
+  if (spec.scene_texts) {
+    if (spec.scene_texts->size() != files.size()) {
+      section.fail("scene_texts",
+                   fmt::format("found {} scenes for {} values", spec.scene_texts->size(), files.size()));
     }
+    return *spec.scene_texts;
   }
-  scenes = section.strings_or("scene_texts", scenes);
-  if (scenes.size() != files.size()) {
-    section.fail("scene_texts", fmt::format("found {} scenes for {} values", scenes.size(), files.size()));
+  std::vector<std::string> scenes;
+  const std::filesystem::path directory = std::filesystem::path(section.source_name()).parent_path();
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const auto* file = std::get_if<std::string>(&files[k]);
+    if (file == nullptr) section.fail("values", {k}, "expected the file name of a scene");
+    scenes.push_back(scene::read_scene(directory / *file).resolved_toml);
   }
+  resolved.set("scene_texts", scenes);
   return scenes;
 }
 
-Parameter read_parameter(const CheckedTable& section) {
+Parameter make_parameter(const ParameterSpec& spec, const CheckedTable& section, TomlTree resolved) {
   Parameter parameter;
-  parameter.path = section.string("path");
+  parameter.path = spec.path;
   std::string last = parameter.path.substr(parameter.path.find_last_of('.') + 1);
   last.erase(std::min(last.find('['), last.size()));
-  parameter.name = section.string_or("name", last.empty() ? "value" : last);
-  parameter.unit = section.string_or("unit", "1");
-  if (section.has("values") && holds_strings(section)) {
-    for (const std::string& text : section.strings("values")) parameter.values.emplace_back(text);
-    parameter.unit = "";
-  } else {
-    for (const double number : read_parameter_values(section))
+  parameter.name = spec.name.value_or(last.empty() ? "value" : last);
+  if (!spec.name) resolved.set("name", parameter.name);
+  parameter.unit = spec.unit;
+  ParameterValues numbers = spec.sequence;
+  if (spec.values) {
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&*spec.values)) {
+      for (const std::string& text : *texts) parameter.values.emplace_back(text);
+      parameter.unit = "";
+    } else {
+      numbers.values = std::get<std::vector<double>>(*spec.values);
+    }
+  }
+  if (parameter.values.empty()) {
+    for (const double number : sorted_values(numbers, section))
       parameter.values.push_back(number_value(number));
   }
-  if (parameter.values.empty()) section.fail("values", "found an empty list, expected at least one value");
   const auto is_fit = [](char letter) {
     return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_' || letter == '-';
   };
@@ -117,7 +174,13 @@ Parameter read_parameter(const CheckedTable& section) {
     section.fail("name", fmt::format("found \"{}\", expected letters, digits, _ and -: it names a column",
                                      parameter.name));
   }
-  if (parameter.path.ends_with(".scene")) parameter.scenes = read_scenes(section, parameter.values);
+  if (parameter.path.ends_with(".scene")) {
+    parameter.scenes = scenes_of(spec, section, parameter.values, resolved);
+  } else if (spec.scene_texts) {
+    section.fail(
+        "scene_texts",
+        fmt::format("found with the path \"{}\", expected one that ends in \".scene\"", parameter.path));
+  }
   return parameter;
 }
 
@@ -132,18 +195,20 @@ void thin_out(std::vector<Entry>& values, std::size_t count) {
   values = std::move(kept);
 }
 
-std::vector<Parameter> read_parameters(const CheckedTable& spec, bool quick) {
+std::vector<Parameter> make_parameters(const Spec& spec, const StudyInput& input) {
   std::vector<Parameter> parameters;
   std::set<std::string> names;
-  const auto points =
-      static_cast<std::size_t>(spec.table_or_empty("quick").integer_or("values", 2, 1, 10'000));
-  for (const CheckedTable& section : spec.tables("parameter")) {
-    Parameter& parameter = parameters.emplace_back(read_parameter(section));
+  const auto points = static_cast<std::size_t>(spec.quick_values);
+  const std::vector<CheckedTable> sections = input.file.tables("parameter");
+  for (std::size_t k = 0; k < spec.parameters.size(); ++k) {
+    const CheckedTable& section = sections[k];
+    Parameter& parameter = parameters.emplace_back(
+        make_parameter(spec.parameters[k], section, TomlTree(input.resolved).table("parameter", k)));
     if (!names.insert(parameter.name).second) {
       section.fail("path", fmt::format("another parameter is called \"{}\" as well; give one a \"name\"",
                                        parameter.name));
     }
-    if (quick) {
+    if (input.is_quick) {
       thin_out(parameter.values, points);
       thin_out(parameter.scenes, points);
     }
@@ -154,29 +219,10 @@ std::vector<Parameter> read_parameters(const CheckedTable& spec, bool quick) {
     product *= parameter.values.size();
     if (product > most_points) {
       throw InputError(fmt::format("{}: the grid of the [[parameter]] sections has more than {} points",
-                                   spec.source_name(), most_points));
+                                   input.file.source_name(), most_points));
     }
-  }
-  if (parameters.empty()) {
-    throw InputError(fmt::format("{}: found no [[parameter]], expected at least one", spec.source_name()));
   }
   return parameters;
-}
-
-/// Marks everything in a section as read: another reader checks it.
-void accept_everything(const CheckedTable& section) {
-  for (const std::string& key : section.keys()) {
-    if (!section.has(key)) continue;
-    if (section.is_table(key)) {
-      accept_everything(section.table(key));
-      continue;
-    }
-    try {
-      for (const CheckedTable& inner : section.tables(key)) accept_everything(inner);
-    } catch (const InputError&) {
-      // a plain value
-    }
-  }
 }
 
 /// One point of the grid: an index into the values of each parameter.
@@ -204,48 +250,45 @@ bool chooses_scene(const std::vector<Parameter>& parameters, std::size_t k) {
 
 /// Puts the texts of the scenes that the first point has read into the resolved specification, which then
 /// needs no other file.
-void record_scenes(const CheckedTable& study, const Plan& inner, const std::vector<Parameter>& parameters) {
-  const CheckedTable resolved = CheckedTable::parse_text(inner.spec, study.source_name());
-  const std::vector<CheckedTable> sections = study.tables("problem"), with_text = resolved.tables("problem");
+void record_scenes(TomlTree study, const CheckedTable& given, const Plan& inner,
+                   const std::vector<Parameter>& parameters) {
+  const CheckedTable resolved = CheckedTable::parse_text(inner.spec, given.source_name());
+  const std::vector<CheckedTable> sections = given.tables("problem"), with_text = resolved.tables("problem");
   for (std::size_t k = 0; k < std::min(sections.size(), with_text.size()); ++k) {
-    if (with_text[k].has("scene_text") && !chooses_scene(parameters, k))
-      sections[k].string_or("scene_text", with_text[k].string("scene_text"));
+    if (!with_text[k].has("scene_text") || sections[k].has("scene_text") || chooses_scene(parameters, k)) {
+      continue;
+    }
+    study.table("problem", k).set("scene_text", with_text[k].string("scene_text"));
   }
 }
 
-/// The case of the inner study with the parameters before its own columns.
-PlannedCase with_parameters(PlannedCase inner, const std::string& point, std::vector<SummaryCell> cells) {
+/// The case of the inner study with the parameters of its point.
+PlannedCase with_parameters(PlannedCase inner, const std::string& point,
+                            const std::vector<SummaryCell>& parameters) {
   inner.id = group_name(point + "-" + inner.id);
   inner.identity = "sweep\n" + point + "\n" + inner.identity;
-  inner.facts.insert(inner.facts.begin(), cells.begin(), cells.end());
-  inner.run = [run = std::move(inner.run), cells = std::move(cells)](const RunContext& context) {
-    CaseResult result = run(context);
-    result.summary.insert(result.summary.begin(), cells.begin(), cells.end());
-    return result;
-  };
+  inner.parameters = parameters;
   return inner;
 }
 
 /// The inner study with the values of a point; a path that leads nowhere is a mistake of the parameters.
-std::string assigned(const std::string& text, const std::string& where,
-                     const std::vector<TomlAssignment>& assignments, const CheckedTable& spec) {
+CheckedTable assigned(const CheckedTable& study, const std::string& name,
+                      const std::vector<TomlAssignment>& assignments) {
   try {
-    return toml_with(text, where, assignments);
+    return study.with(assignments, name);
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: [[parameter]] path: {}", spec.source_name(), error.what()));
+    throw InputError(fmt::format("{}: [[parameter]] path: {}", study.source_name(), error.what()));
   }
 }
 
 /// What the inner study concludes from the cases of one point.
 struct Conclusion {
   std::map<std::string, std::string> inner_ids;  ///< by the ids in the sweep
-  std::vector<SummaryCell> cells;                ///< of the parameters
   std::function<void(StudyResult&)> conclude;
 };
 
 /// Lets the inner study see the cases of its point as if it had run by itself.
 void conclude_point(StudyResult& sweep, const Conclusion& point) {
-  const auto parameters = static_cast<std::ptrdiff_t>(point.cells.size());
   StudyResult inner;
   std::vector<CaseResult*> places;
   for (CaseResult& result : sweep.cases) {
@@ -254,33 +297,42 @@ void conclude_point(StudyResult& sweep, const Conclusion& point) {
     places.push_back(&result);
     CaseResult& seen = inner.cases.emplace_back(result);
     seen.id = found->second;
-    seen.summary.erase(seen.summary.begin(), seen.summary.begin() + parameters);
   }
   point.conclude(inner);
   for (std::size_t k = 0; k < places.size(); ++k) {
     std::string id = places[k]->id;
     *places[k] = std::move(inner.cases[k]);
     places[k]->id = std::move(id);
-    places[k]->summary.insert(places[k]->summary.begin(), point.cells.begin(), point.cells.end());
   }
 }
 
-void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
-                bool quick, Plan& plan) {
-  const std::vector<Parameter> parameters = read_parameters(spec, quick);
-  spec.strings_or("quantities", {});  // what the plot shows
-  const CheckedTable study = spec.table("study");
-  study.string_or("title", plan.title);
+/// What [study] may leave out since the sweep has it.
+std::vector<TomlAssignment> inherited(const CheckedTable& study, const Plan& plan, TomlTree resolved) {
+  std::vector<TomlAssignment> assignments;
+  if (!study.has("title")) {
+    assignments.push_back({"title", plan.title});
+    resolved.set("title", plan.title);
+  }
   // The resolved specification has it in both places.
   if (study.has("seed") && study.integer("seed") != plan.seed)
     study.fail("seed", "expected at the top of the file, where it counts for every point");
-  study.integer_or("seed", plan.seed);
-  accept_everything(study);
-  const std::string text = study.to_toml_text();
+  if (!study.has("seed")) {
+    assignments.push_back({"seed", plan.seed});
+    resolved.set("seed", plan.seed);
+  }
+  return assignments;
+}
+
+void plan_sweep(const Spec& sweep, const StudyInput& input, const std::vector<StudyKind>& kinds, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  const std::vector<Parameter> parameters = make_parameters(sweep, input);
+  const CheckedTable study = spec.table("study");
+  const TomlTree resolved_study = TomlTree(input.resolved).table("study");
+  const std::vector<TomlAssignment> for_all = inherited(study, plan, resolved_study);
   bool is_first = true;
   std::vector<Conclusion> conclusions;
   for (const std::vector<std::size_t>& point : grid_points(parameters)) {
-    std::vector<TomlAssignment> assignments;
+    std::vector<TomlAssignment> assignments = for_all;
     std::vector<SummaryCell> cells;
     std::string name;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -294,16 +346,16 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
     }
     const std::string where = fmt::format("{} ([study] with {})", spec.source_name(), group_name(name));
     // The directory stays that of the file, so that scenes are found.
-    const CheckedTable inner_spec = CheckedTable::parse_text(assigned(text, where, assignments, spec), where);
-    Plan inner = read_plan(inner_spec, kinds, catalog, quick);
+    Plan inner = read_plan(assigned(study, where, assignments), kinds, input.catalog, input.is_quick);
     if (is_first) {
-      record_scenes(study, inner, parameters);
+      record_scenes(resolved_study, study, inner, parameters);
       plan.warnings = inner.warnings;
+      plan.summary = inner.summary;
       if (plan.time_limit == 0.0) plan.time_limit = inner.time_limit;
     }
     is_first = false;
     if (inner.conclude) {
-      Conclusion& conclusion = conclusions.emplace_back(Conclusion{{}, cells, inner.conclude});
+      Conclusion& conclusion = conclusions.emplace_back(Conclusion{{}, inner.conclude});
       for (const PlannedCase& planned : inner.cases) {
         conclusion.inner_ids[group_name(name + "-" + planned.id)] = planned.id;
       }
@@ -320,11 +372,13 @@ void read_sweep(const CheckedTable& spec, const std::vector<StudyKind>& kinds, c
 }  // namespace
 
 StudyKind sweep_kind(std::vector<StudyKind> kinds) {
-  return {.name = "sweep",
-          .title = "A study over a grid of parameters",
-          .description = "any other kind of study at every combination of values for some of its keys",
-          .read = [kinds = std::move(kinds)](const CheckedTable& spec, const Catalog& catalog, bool quick,
-                                             Plan& plan) { read_sweep(spec, kinds, catalog, quick, plan); }};
+  return declared_kind<Spec>(
+      {.name = "sweep",
+       .title = "A study over a grid of parameters",
+       .description = "any other kind of study at every combination of values for some of its keys"},
+      [kinds = std::move(kinds)](const Spec& spec, const StudyInput& input, Plan& plan) {
+        plan_sweep(spec, input, kinds, plan);
+      });
 }
 
 }  // namespace fw::study

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "linalg/linear_solver.hpp"
+#include "settings/identity_text.hpp"
 #include "study/linear_solver/step_spectrum.hpp"
 #include "study/linear_solver/step_systems.hpp"
 #include "study/problem_spec.hpp"
@@ -20,20 +21,56 @@ namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::setting;
+
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [linear_solver].
 struct Settings {
-  std::vector<double> steps;             ///< h [s]
-  double tolerance = 1e-8;               ///< ‖b − A x‖/‖b‖ asked of iterative solvers
-  std::int64_t repetitions = 5;          ///< of each timing
-  std::int64_t sequence = 60;            ///< systems of one simulation
-  std::int64_t largest_spectrum = 1000;  ///< unknowns up to which all eigenvalues are computed
-
-  std::string text() const {
-    return fmt::format("tolerance = {}\nrepetitions = {}\nsequence = {}\n", tolerance, repetitions, sequence);
-  }
+  std::vector<double> steps;
+  double tolerance = 1e-8;
+  std::int64_t repetitions = 5;
+  std::int64_t sequence = 60;
+  std::int64_t largest_spectrum = 1000;
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("steps", s.steps).unit("s").required().not_empty().positive().selects_cases().doc("h"));
+  a(setting("tolerance", s.tolerance)
+        .unit("1")
+        .positive()
+        .doc("relative residual ‖b − A x‖/‖b‖ asked of iterative solvers"));
+  a(setting("repetitions", s.repetitions).integers(1, 1000).quick_at_most(2).doc("of each timing"));
+  a(setting("sequence", s.sequence).integers(0, 100'000).quick_at_most(5).doc("systems of one simulation"));
+  a(setting("largest_spectrum", s.largest_spectrum)
+        .integers(0, 5000)
+        .selects_cases()
+        .doc("unknowns up to which all eigenvalues are computed"));
+}
+
+struct Spec {
+  std::vector<std::string> solvers;
+  Settings settings;
+  std::vector<ProblemSpec> problems;
+  std::int64_t quick_largest_problem = 2000;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(setting("solvers", spec.solvers)
+        .required()
+        .not_empty()
+        .doc("`cg`, `cholesky`, `ldlt`, `lu`, `eigen_cg`, `eigen_lu`, `cholmod`, or `petsc` with options in "
+             "PETSc's notation: `\"petsc -ksp_type cg -pc_type icc -mat_type sbaij\"`"));
+  a.section({.name = "linear_solver", .doc = "The systems and how they are solved.", .is_required = true},
+            spec.settings);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section([&] {
+    a(setting("largest_problem", spec.quick_largest_problem)
+          .at_least(1)
+          .doc("unknowns; larger problems are left out"));
+  });
+}
 
 /// A system, which all solvers share.
 struct SystemSpec {
@@ -63,29 +100,37 @@ struct Figures {
   double iterations = none, iterations_warm = none, iterations_kept = none, difference = none;
   double smallest_eigenvalue = none, largest_eigenvalue = none, condition = none,
          condition_block_jacobi = none;
+  std::string problem{};
+  double step = none;
 };
 
-void add_summary(const SystemSpec& system, const Figures& figures, CaseResult& result) {
-  result.summary = {{"problem", "", system.problem.label},
-                    {"step", "s", system.step},
-                    {"solver", "", figures.solver},
-                    {"unknowns", "1", figures.unknowns},
-                    {"assembly_seconds", "s", figures.assembly},
-                    {"first_setup_seconds", "s", figures.first_setup},
-                    {"setup_seconds", "s", figures.setup},
-                    {"solve_seconds", "s", figures.solve},
-                    {"iterations", "1", figures.iterations},
-                    {"iterations_warm", "1", figures.iterations_warm},
-                    {"iterations_kept", "1", figures.iterations_kept},
-                    {"memory", "B", figures.memory},
-                    {"residual", "1", figures.residual},
-                    {"difference", "1", figures.difference},
-                    {"smallest_eigenvalue", "kg", figures.smallest_eigenvalue},
-                    {"largest_eigenvalue", "kg", figures.largest_eigenvalue},
-                    {"condition", "1", figures.condition},
-                    {"condition_block_jacobi", "1", figures.condition_block_jacobi},
-                    {"verdict", "", std::string(to_string(result.verdict))},
-                    {"reason", "", result.reason}};
+void declare(SummaryRow& a, const Figures& row) {
+  a("problem", "", row.problem, "its label");
+  a("step", "s", row.step, "h of the implicit step");
+  a("solver", "", row.solver, "as in the study; `spectrum`");
+  a("unknowns", "1", row.unknowns, "n");
+  a("assembly_seconds", "s", row.assembly,
+    "the smallest of the repetitions, like all seconds here; NaN of spectra");
+  a("first_setup_seconds", "s", row.first_setup, "");
+  a("setup_seconds", "s", row.setup, "");
+  a("solve_seconds", "s", row.solve, "");
+  a("iterations", "1", row.iterations,
+    "of the timed system; NaN of direct solvers, PETSc's `preonly` among them");
+  a("iterations_warm", "1", row.iterations_warm, "mean over the simulation; NaN of direct solvers");
+  a("iterations_kept", "1", row.iterations_kept, "likewise");
+  a("memory", "B", row.memory, "heap that the solver holds after a solve; NaN where the heap has shrunk");
+  a("residual", "1", row.residual, "true relative residual of the timed solve");
+  a("difference", "1", row.difference, "‖x − x_direct‖₂/‖x_direct‖₂ with CHOLMOD's solution");
+  a("smallest_eigenvalue", "kg", row.smallest_eigenvalue, "of spectra, else NaN, like all that follows");
+  a("largest_eigenvalue", "kg", row.largest_eigenvalue, "");
+  a("condition", "1", row.condition, "of A");
+  a("condition_block_jacobi", "1", row.condition_block_jacobi, "with the preconditioner");
+}
+
+void add_summary(const SystemSpec& system, Figures figures, CaseResult& result) {
+  figures.problem = system.problem.label;
+  figures.step = system.step;
+  result.summary = cells_of(figures);
 }
 
 /// How a system of a simulation is started.
@@ -172,7 +217,7 @@ class SolverCase {
       runs_.emplace_back(options_, Start::kept, n);
     }
     for (std::int64_t k = 0; k < settings_.sequence; ++k) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       for (SequenceRun& run : runs_) {
         Status status = run.solve(systems_);
         if (status.ok()) status = check(run.residuals.back());
@@ -206,7 +251,7 @@ class SolverCase {
     const Vector b = systems_.right_hand_side();
     Vector x(n);
     for (std::int64_t k = 0; k < settings_.repetitions; ++k) {
-      if (context_.is_interrupted()) throw Interrupted{};
+      context_.check();
       auto begin = std::chrono::steady_clock::now();
       systems_.assemble();
       assembly_.push_back(seconds_since(begin));
@@ -310,46 +355,23 @@ CaseResult run_spectrum(const SystemSpec& system, const Settings& settings) {
   return result;
 }
 
-Settings read_settings(const CheckedTable& spec, bool quick) {
-  Settings settings;
-  const CheckedTable table = spec.table("linear_solver");
-  settings.steps = table.numbers("steps", NumberRule::positive);
-  if (settings.steps.empty()) table.fail("steps", "found an empty list, expected at least one step");
-  settings.tolerance = table.number_or("tolerance", settings.tolerance, NumberRule::positive);
-  settings.repetitions = table.integer_or("repetitions", settings.repetitions, 1, 1000);
-  settings.sequence = table.integer_or("sequence", settings.sequence, 0, 100'000);
-  settings.largest_spectrum = table.integer_or("largest_spectrum", settings.largest_spectrum, 0, 5000);
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t quick_repetitions =
-      shrunk.integer_or("repetitions", std::min<std::int64_t>(settings.repetitions, 2), 1, 1000);
-  const std::int64_t quick_sequence =
-      shrunk.integer_or("sequence", std::min<std::int64_t>(settings.sequence, 5), 0, 100'000);
-  if (quick) {
-    settings.repetitions = quick_repetitions;
-    settings.sequence = quick_sequence;
-  }
-  return settings;
-}
-
 /// With --quick, problems of more unknowns than [quick] largest_problem are left out.
-std::vector<StudyProblem> read_step_problems(const CheckedTable& spec, const Catalog& catalog, bool quick,
-                                             std::vector<std::string>& warnings) {
-  std::vector<StudyProblem> problems = read_problems(spec, catalog, warnings);
+std::vector<StudyProblem> step_problems(const Spec& spec, const StudyInput& input,
+                                        std::vector<std::string>& warnings) {
+  std::vector<StudyProblem> problems = make_problems(spec.problems, input, warnings);
   for (const StudyProblem& entry : problems) {
     if (entry.problem.ivp.system->second_order() == nullptr) {
       throw InputError(fmt::format("{}: problem \"{}\" is y' = f(t, y), expected M q'' = f(t, q, q')",
-                                   spec.source_name(), entry.label));
+                                   input.file.source_name(), entry.label));
     }
   }
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t largest = shrunk.integer_or("largest_problem", 2000, 1);
-  if (quick) {
-    std::erase_if(problems, [largest](const StudyProblem& entry) {
-      return entry.problem.ivp.system->second_order()->degrees_of_freedom() > largest;
-    });
-    if (problems.empty()) {
-      shrunk.fail("largest_problem", fmt::format("found {}, which leaves no problem", largest));
-    }
+  if (!input.is_quick) return problems;
+  const std::int64_t largest = spec.quick_largest_problem;
+  std::erase_if(problems, [largest](const StudyProblem& entry) {
+    return entry.problem.ivp.system->second_order()->degrees_of_freedom() > largest;
+  });
+  if (problems.empty()) {
+    input.section("quick").fail("largest_problem", fmt::format("found {}, which leaves no problem", largest));
   }
   return problems;
 }
@@ -385,9 +407,7 @@ std::string probe(const std::string& call) {
   });
 }
 
-std::vector<std::string> read_solvers(const CheckedTable& spec) {
-  std::vector<std::string> solvers = spec.strings("solvers");
-  if (solvers.empty()) spec.fail("solvers", "found an empty list, expected at least one solver");
+void check_solvers(const std::vector<std::string>& solvers, const CheckedTable& spec) {
   for (std::size_t i = 0; i < solvers.size(); ++i) {
     std::string message;
     try {
@@ -397,18 +417,18 @@ std::vector<std::string> read_solvers(const CheckedTable& spec) {
     }
     if (!message.empty()) spec.fail("solvers", {i}, message);
   }
-  return solvers;
 }
 
-void read_linear_solver_study(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const Settings settings = read_settings(spec, quick);
-  const std::vector<std::string> solvers = read_solvers(spec);
-  for (StudyProblem& entry : read_step_problems(spec, catalog, quick, plan.warnings)) {
+void plan_linear_solvers(const Spec& spec, const StudyInput& input, Plan& plan) {
+  const Settings& settings = spec.settings;
+  const std::vector<std::string>& solvers = spec.solvers;
+  check_solvers(solvers, input.file);
+  for (StudyProblem& entry : step_problems(spec, input, plan.warnings)) {
     for (double step : settings.steps) {
       const auto system = std::make_shared<const SystemSpec>(SystemSpec{entry, step});
       const std::string name = fmt::format("{}-h{}", entry.label, step);
-      const std::string identity =
-          fmt::format("linear_solver\n{}step = {}\n{}", entry.identity, step, settings.text());
+      const std::string identity = fmt::format("linear_solver\n{}step = {}\n{}", entry.identity, step,
+                                               settings::identity_text(settings));
       if (entry.problem.ivp.system->second_order()->degrees_of_freedom() <= settings.largest_spectrum) {
         plan.cases.push_back(
             {.id = group_name(name + "-spectrum"),
@@ -431,12 +451,18 @@ void read_linear_solver_study(const CheckedTable& spec, const Catalog& catalog, 
 }  // namespace
 
 StudyKind linear_solver_kind() {
-  return {.name = "linear_solver",
-          .title = "Linear solvers on the systems of implicit steps",
-          .description =
-              "assembly, set-up, solve, iterations, memory and true residual of every solver over size, "
-              "stiffness and step; warm start and kept preconditioners; spectrum",
-          .read = read_linear_solver_study};
+  return declared_kind<Spec>(
+      {.name = "linear_solver",
+       .title = "Linear solvers on the systems of implicit steps",
+       .description =
+           "assembly, set-up, solve, iterations, memory and true residual of every solver over size, "
+           "stiffness and step; warm start and kept preconditioners; spectrum",
+       .summary = columns_of<Figures>(),
+       .verdict_meaning =
+           "`holds`: every true residual is at most ten times the tolerance; of spectra: A is positive "
+           "definite and conjugate gradients take no more iterations than the condition allows",
+       .reason_meaning = ""},
+      plan_linear_solvers);
 }
 
 }  // namespace fw::study

@@ -1,8 +1,9 @@
 #include "study/linear_solver/step_spectrum.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "dense/eigenvalues.hpp"
 
 namespace fw::study {
 
@@ -22,10 +23,6 @@ Matrix block_jacobi_scaled(const Matrix& A) {
   return scaled;
 }
 
-Vector eigenvalues_of(const Matrix& A) {
-  return Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 }  // namespace
 
 double StepSpectrum::iteration_bound(double tolerance) const {
@@ -37,7 +34,7 @@ double StepSpectrum::iteration_bound(double tolerance) const {
 
 StepSpectrum spectrum_of(const SparseMatrix& A) {
   const Matrix dense(A);
-  return {eigenvalues_of(dense), eigenvalues_of(block_jacobi_scaled(dense))};
+  return {dense::symmetric_eigenvalues(dense), dense::symmetric_eigenvalues(block_jacobi_scaled(dense))};
 }
 
 }  // namespace fw::study

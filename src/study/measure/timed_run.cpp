@@ -5,16 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "study/stop_when_interrupted.hpp"
-
 namespace fw::study {
 
 Solution run_once(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
                   const RunContext& context) {
-  StopWhenInterrupted observer(context);
-  Solution solution = integrator.solve(ivp, control, observer);
-  if (context.is_interrupted()) throw Interrupted{};
-  return solution;
+  NullObserver observer;
+  return context.solve(integrator, ivp, control, observer);
 }
 
 Timing time_run(const Integrator& integrator, const Ivp& ivp, const StepControl& control,

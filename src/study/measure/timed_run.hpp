@@ -24,7 +24,7 @@ struct Timing {
 Timing time_run(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
                 double warm_up_seconds, const TimingRule& rule, const RunContext& context);
 
-/// One run with the observer that the interrupt needs. Throws Interrupted.
+/// One run that nobody observes. Throws Interrupted.
 Solution run_once(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
                   const RunContext& context);
 

@@ -66,7 +66,7 @@ DisturbedNetwork disturb(const StudyProblem& problem, std::int64_t mass, bool ki
   network.ivp = problem.problem.ivp;
   network.is_kicked = kick;
   const auto* scene = dynamic_cast<const mechanics::MassSpringSystem*>(network.ivp.system.get());
-  const bool is_chain = problem.problem.name == "linear_chain" && scene == nullptr;
+  const bool is_chain = problem.problem.test_equation == TestEquation::spring_chain;
   if (!is_chain && scene == nullptr) {
     throw InputError(fmt::format("problem \"{}\": expected \"linear_chain\" or a scene", problem.label));
   }

@@ -11,49 +11,107 @@
 #include "analysis/fit/binned_series.hpp"
 #include "analysis/theory/influence_front.hpp"
 #include "core/error.hpp"
+#include "settings/identity_text.hpp"
 #include "study/propagation/disturbed_network.hpp"
 
 namespace fw::study {
 
 namespace {
 
+using settings::Archive;
+using settings::choice;
+using settings::setting;
+
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [propagation].
 struct Settings {
-  std::vector<double> steps;     ///< h [s]
-  std::int64_t step_count = 60;  ///< of every run
-  double duration = 0.0;         ///< in place of it [s]; 0: none
-  std::int64_t mass = -1;        ///< the one that is disturbed; −1: the middle one
-  bool kick = true;              ///< a velocity, else a displacement
-  double size = 1.0;             ///< of it [m/s] or [m]
+  std::vector<double> steps;
+  std::int64_t step_count = 60;
+  double duration = 0.0;
+  std::int64_t mass = -1;
+  bool kick = true;
+  double size = 1.0;
   Vec3<double> direction{1.0, 0.0, 0.0};
-  double threshold = 1e-3;        ///< of the largest displacement so far, for the front that can be seen
-  double speed_tolerance = 0.02;  ///< of the speed of the wave, relative
+  double threshold = 1e-3;
+  double speed_tolerance = 0.02;
 
   std::int64_t steps_of(double step) const {
     return duration > 0.0 ? std::max<std::int64_t>(2, std::llround(duration / step)) : step_count;
   }
-
-  std::string text() const {
-    return fmt::format(
-        "steps = {}\nstep_count = {}\nduration = {}\nmass = {}\nkick = {}\nsize = {}\ndirection = {} {} "
-        "{}\nthreshold = {}\n"
-        "speed_tolerance = {}\n",
-        fmt::join(steps, ", "), step_count, duration, mass, kick, size, direction.x, direction.y, direction.z,
-        threshold, speed_tolerance);
-  }
 };
+
+void declare(Archive& a, Settings& s) {
+  a(setting("steps", s.steps).unit("s").required().not_empty().positive().doc("h; a case each"));
+  a(setting("step_count", s.step_count)
+        .integers(2, 100'000)
+        .quick()
+        .doc("steps of every run; a case keeps (steps + 1) · masses displacements, at most 50 000 000"));
+  a(setting("duration", s.duration)
+        .unit("s")
+        .nonnegative()
+        .doc("in place of `step_count`: every run lasts about so long; 0: not so"));
+  a(setting("mass", s.mass).at_least(-1).doc("index of the one that is disturbed; −1: the middle one"));
+  a(choice("disturbance", s.kick, {{"velocity", true}, {"position", false}})
+        .doc("what it is given at the start"));
+  a(setting("size", s.size).unit("m/s or m").positive().doc("of the disturbance"));
+  a(setting("direction", s.direction).doc("of it in a scene; a chain moves along itself"));
+  a(setting("threshold", s.threshold)
+        .unit("1")
+        .positive()
+        .doc("of the largest displacement so far, for the front that can be seen"));
+  a(setting("speed_tolerance", s.speed_tolerance)
+        .unit("1")
+        .positive()
+        .doc("relative, of the speed of the wave"));
+}
+
+struct Spec {
+  std::vector<std::string> methods;
+  Settings settings;
+  std::vector<ProblemSpec> problems;
+};
+
+void declare(Archive& a, Spec& spec) {
+  a(methods_setting(spec.methods));
+  a.section({.name = "propagation", .doc = "The disturbance and the runs.", .is_required = true},
+            spec.settings);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section();
+}
 
 /// ∫₀ⁿ J_n(x) dx → 1/3: where a kick's displacement has reached a third of its final value, there the front
 /// is that travels at the speed of long waves [Watson 1944, 8.43].
 constexpr double wave_level = 1.0 / 3.0;
 
+/// The row of the summary.
+struct Row {
+  std::string problem, method;
+  double step = none;
+  std::int64_t farthest = 0;
+  double springs_per_step = none;
+  std::int64_t first_step_velocity = -1, first_step_position = -1;
+  double wave_springs_per_step = none, wave_speed = none, physical_wave_speed = none;
+};
+
+void declare(SummaryRow& a, const Row& row) {
+  a("problem", "", row.problem, "its label");
+  a("method", "", row.method, "as in the study, with settings");
+  a("step", "s", row.step, "h");
+  a("farthest", "1", row.farthest, "largest distance");
+  a("springs_per_step", "1", row.springs_per_step, "of the velocities' front until it reaches the end");
+  a("first_step_velocity", "1", row.first_step_velocity, "front of the velocities after one step");
+  a("first_step_position", "1", row.first_step_position, "of the positions");
+  a("wave_springs_per_step", "1", row.wave_springs_per_step, "√(k/m) h; NaN in scenes");
+  a("wave_speed", "1/s", row.wave_speed, "springs per second, fitted; NaN where it cannot be");
+  a("physical_wave_speed", "1/s", row.physical_wave_speed, "√(k/m); NaN in scenes");
+}
+
 /// Records displacements and fronts of every step.
 class FrontObserver final : public Observer {
  public:
-  FrontObserver(const DisturbedNetwork& network, double threshold, double plateau, const RunContext& context)
-      : network_(network), threshold_(threshold), plateau_(plateau), context_(context) {}
+  FrontObserver(const DisturbedNetwork& network, double threshold, double plateau)
+      : network_(network), threshold_(threshold), plateau_(plateau) {}
 
   bool observe(const StepView& view) override {
     const Index n = network_.rest.size(), c = network_.coordinates;
@@ -77,7 +135,7 @@ class FrontObserver final : public Observer {
     fronts.push_back(front);
     visible.push_back(seen);
     waves.push_back(wave_front(displacement));
-    return !context_.is_interrupted();
+    return true;
   }
 
   std::vector<double> times, displacements, waves;
@@ -99,7 +157,6 @@ class FrontObserver final : public Observer {
 
   const DisturbedNetwork& network_;
   double threshold_, plateau_;
-  const RunContext& context_;
   double largest_ = 0.0;
 };
 
@@ -116,7 +173,7 @@ class PropagationCase {
         context_(context),
         // Of a kick in an endless chain every mass ends up displaced by v/(2ω).
         seen_(network, settings.threshold,
-              network.is_kicked ? 0.5 * settings.size / network.wave_speed : none, context) {
+              network.is_kicked ? 0.5 * settings.size / network.wave_speed : none) {
     const analysis::InfluenceFront start =
         network.is_kicked ? analysis::InfluenceFront{-1, 0} : analysis::InfluenceFront{0, -1};
     predicted_ = analysis::predict_fronts(data, start, network.farthest,
@@ -127,8 +184,7 @@ class PropagationCase {
   CaseResult run() {
     Ivp ivp = network_.ivp;
     ivp.t1 = ivp.t0 + step_ * static_cast<double>(settings_.steps_of(step_));
-    solution_ = integrator_.solve(ivp, FixedStep{.step = step_}, seen_);
-    if (context_.is_interrupted()) throw Interrupted{};
+    solution_ = context_.solve(integrator_, ivp, FixedStep{.step = step_}, seen_);
     fit_speed();
     CaseResult result;
     judge(result);
@@ -263,19 +319,16 @@ class PropagationCase {
 
   void add_summary(CaseResult& result) const {
     const auto& fronts = seen_.fronts;
-    result.summary = {
-        {"problem", "", network_.label},
-        {"method", "", call_},
-        {"step", "s", step_},
-        {"farthest", "1", static_cast<std::int64_t>(network_.farthest)},
-        {"springs_per_step", "1", springs_per_step(&analysis::InfluenceFront::velocity)},
-        {"first_step_velocity", "1", static_cast<std::int64_t>(fronts.size() > 1 ? fronts[1].velocity : -1)},
-        {"first_step_position", "1", static_cast<std::int64_t>(fronts.size() > 1 ? fronts[1].position : -1)},
-        {"wave_springs_per_step", "1", step_ * network_.wave_speed},
-        {"wave_speed", "1/s", speed_},
-        {"physical_wave_speed", "1/s", network_.wave_speed},
-        {"verdict", "", std::string(to_string(result.verdict))},
-        {"reason", "", result.reason}};
+    result.summary = cells_of(Row{.problem = network_.label,
+                                  .method = call_,
+                                  .step = step_,
+                                  .farthest = network_.farthest,
+                                  .springs_per_step = springs_per_step(&analysis::InfluenceFront::velocity),
+                                  .first_step_velocity = fronts.size() > 1 ? fronts[1].velocity : -1,
+                                  .first_step_position = fronts.size() > 1 ? fronts[1].position : -1,
+                                  .wave_springs_per_step = step_ * network_.wave_speed,
+                                  .wave_speed = speed_,
+                                  .physical_wave_speed = network_.wave_speed});
   }
 
   const DisturbedNetwork& network_;
@@ -290,31 +343,14 @@ class PropagationCase {
   double speed_ = none;
 };
 
-Settings read_settings(const CheckedTable& spec, bool quick) {
-  Settings settings;
-  const CheckedTable table = spec.table("propagation");
-  settings.steps = table.numbers("steps", NumberRule::positive);
-  if (settings.steps.empty()) table.fail("steps", "found an empty list, expected at least one step");
-  settings.step_count = table.integer_or("step_count", settings.step_count, 2, 100'000);
-  settings.duration = table.number_or("duration", settings.duration, NumberRule::nonnegative);
-  settings.mass = table.integer_or("mass", settings.mass, -1);
-  settings.kick = table.choice_or("disturbance", "velocity", {"velocity", "position"}) == "velocity";
-  settings.size = table.number_or("size", settings.size, NumberRule::positive);
-  settings.direction = table.vec3_or("direction", settings.direction);
+void check(const Settings& settings, const CheckedTable& table) {
   if (norm(settings.direction) == 0.0) table.fail("direction", "found the zero vector, expected a direction");
-  settings.threshold = table.number_or("threshold", settings.threshold, NumberRule::positive);
-  settings.speed_tolerance =
-      table.number_or("speed_tolerance", settings.speed_tolerance, NumberRule::positive);
-  const std::int64_t quick_count =
-      spec.table_or_empty("quick").integer_or("step_count", settings.step_count, 2, 100'000);
-  if (quick) settings.step_count = quick_count;
-  for (std::size_t k = 0; k < settings.steps.size(); ++k) {
-    if (settings.duration / settings.steps[k] > 1e5) {
-      table.fail("duration", fmt::format("found {}, expected at most 100 000 steps of {}", settings.duration,
-                                         settings.steps[k]));
+  for (const double step : settings.steps) {
+    if (settings.duration / step > 1e5) {
+      table.fail("duration",
+                 fmt::format("found {}, expected at most 100 000 steps of {}", settings.duration, step));
     }
   }
-  return settings;
 }
 
 /// Displacements that a case keeps: (steps + 1) × masses.
@@ -334,10 +370,13 @@ void require_fitting(const CheckedTable& spec, const Settings& settings, const D
   }
 }
 
-void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const Settings settings = read_settings(spec, quick);
-  const std::vector<std::string> methods = read_methods(spec, catalog);
-  for (const StudyProblem& entry : read_problems(spec, catalog, plan.warnings)) {
+void plan_propagation(const Spec& study, const StudyInput& input, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  const Catalog& catalog = input.catalog;
+  const Settings& settings = study.settings;
+  check(settings, spec.table("propagation"));
+  const std::vector<std::string>& methods = checked_methods(study.methods, spec, catalog);
+  for (const StudyProblem& entry : make_problems(study.problems, input, plan.warnings)) {
     std::shared_ptr<const DisturbedNetwork> network;
     try {
       network = std::make_shared<const DisturbedNetwork>(
@@ -359,8 +398,8 @@ void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool qui
         plan.cases.push_back(
             {.id = group_name(fmt::format("{}-{}-h{}", network->label, call, step)),
              .identity = fmt::format("propagation\n{}method = {}\nstep = {}\n{}", network->identity, call,
-                                     step, settings.text()),
-             .run = [network, call, integrator, data = catalog.equivalent_scheme(call), step,
+                                     step, settings::identity_text(settings)),
+             .run = [network, call, integrator, data = catalog.theory(call).on_position_forces, step,
                      settings](const RunContext& context) {
                return PropagationCase(*network, call, *integrator, data, step, settings, context).run();
              }});
@@ -372,10 +411,14 @@ void read_propagation(const CheckedTable& spec, const Catalog& catalog, bool qui
 }  // namespace
 
 StudyKind propagation_kind() {
-  return {.name = "propagation",
-          .title = "Propagation of a disturbance",
-          .description = "springs that a disturbance travels per step, against stages and the speed of waves",
-          .read = read_propagation};
+  return declared_kind<Spec>(
+      {.name = "propagation",
+       .title = "Propagation of a disturbance",
+       .description = "springs that a disturbance travels per step, against stages and the speed of waves",
+       .summary = columns_of<Row>(),
+       .verdict_meaning = "`holds`: fronts as predicted, and the wave's speed",
+       .reason_meaning = ""},
+      plan_propagation);
 }
 
 }  // namespace fw::study

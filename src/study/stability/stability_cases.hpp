@@ -29,8 +29,6 @@ struct RegionSettings {
   double real_from = -5.0, real_to = 2.0;
   double imaginary_from = -4.0, imaginary_to = 4.0;
   std::int64_t points = 121;  ///< along each axis
-
-  std::string text() const;
 };
 
 /// The keys of [limits].
@@ -43,9 +41,8 @@ struct LimitSettings {
   std::int64_t samples = 9;                               ///< of J along a nonlinear trajectory
   std::int64_t largest_dense = 600;                       ///< unknowns with all eigenvalues
   std::int64_t seed = 0;                                  ///< of the study
-
-  std::string text() const;
 };
+void declare(settings::Archive& a, LimitSettings& settings);
 
 /// The spectrum of a problem: once for a linear one, at several times of its trajectory for a nonlinear one.
 struct ProblemSpectrum {
@@ -100,10 +97,8 @@ struct StabilityRow {
   double expected_exponent = none;
   double predicted_exponent = none, predicted_exponent_low = none, predicted_exponent_high = none;
   double observed_exponent = none, observed_exponent_low = none, observed_exponent_high = none;
-
-  /// Fills `result.summary` from this and the result's verdict and reason.
-  void add_to(CaseResult& result) const;
 };
+void declare(SummaryRow& a, const StabilityRow& row);
 
 /// What is found of one problem.
 struct StabilityLimit {

@@ -32,7 +32,7 @@ class LimitCase {
     row_.method = method_.call;
     judge();
     add_columns();
-    row_.add_to(result_);
+    result_.summary = cells_of(row_);
     return std::move(result_);
   }
 
@@ -222,14 +222,6 @@ class LimitCase {
 };
 
 }  // namespace
-
-std::string LimitSettings::text() const {
-  return fmt::format(
-      "tolerance = {}\nexponent_tolerance = {}\nfarthest = {}\ngrowth = {}\nfewest_steps = {}\nmost_steps = "
-      "{}\nsamples = {}\nlargest_dense = {}\nseed = {}\n",
-      tolerance, exponent_tolerance, farthest, growth, fewest_steps, most_steps, samples, largest_dense,
-      seed);
-}
 
 CaseResult run_limit_case(const StabilityFamily& family, const StabilityMethod& method,
                           const LimitSettings& settings, const RunContext& context) {

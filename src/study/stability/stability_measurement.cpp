@@ -55,14 +55,10 @@ class LimitMeasurement {
   double unit() const { return 1.0 / spectrum_.spectral_radius; }
   double farthest() const { return settings_.farthest * unit(); }
 
-  void stop_if_interrupted() const {
-    if (context_.is_interrupted()) throw Interrupted{};
-  }
-
   std::shared_ptr<const OdeSystem> exact_system() const { return spectrum_.is_linear ? system_ : nullptr; }
 
   double growth_at(const LinearModes& modes, double step) const {
-    stop_if_interrupted();
+    context_.check();
     return growth_.of_system(modes, step, exact_system());
   }
 
@@ -117,15 +113,14 @@ class LimitMeasurement {
 
   void observe_linear(StabilityLimit& limit) {
     const GrowthExperiment experiment(method_.integrator, system_, ivp_.t0, spectrum_.spectral_radius,
-                                      static_cast<std::uint64_t>(settings_.seed),
-                                      [this] { return context_.is_interrupted(); });
+                                      static_cast<std::uint64_t>(settings_.seed), context_.stop);
     limit.steps = steps_for(limit.predicted);
     if (limit.steps > 0 || std::isnan(limit.predicted)) {
       if (limit.steps == 0) limit.steps = settings_.fewest_steps;
       limit.observed = analysis::largest_stable_step(
           [&](double step) {
             const GrowthExperiment::Outcome outcome = experiment.run(step, limit.steps);
-            if (outcome.is_interrupted) throw Interrupted{};
+            context_.check();
             if (!outcome.status.ok() && outcome.status.code != StatusCode::blow_up)
               limit.failed_run = outcome.status.describe();
             return outcome.growth < settings_.growth;
@@ -160,8 +155,7 @@ class LimitMeasurement {
       }
     }
     return GrowthExperiment(method_.integrator, system_, ivp_.t0, modes.shapes[critical],
-                            std::sqrt(modes.vibrations[critical].omega_squared),
-                            [this] { return context_.is_interrupted(); });
+                            std::sqrt(modes.vibrations[critical].omega_squared), context_.stop);
   }
 
   /// Growth that is too weak to be told from the beat of many modes is seen where only the mode that grows is
@@ -172,14 +166,14 @@ class LimitMeasurement {
     const MethodInfo& info = method_.integrator->info();
     const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
                              (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
-                              !info.carries_more_than_state && !info.needs_second_order);
+                              !info.carries_more_than_state && !info.needs.has(Capability::second_order));
     const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
     const double bound =
         is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;
     limit.observed = analysis::largest_stable_step(
         [&](double step) {
           const GrowthExperiment::Outcome outcome = experiment->run(step, settings_.most_steps);
-          if (outcome.is_interrupted) throw Interrupted{};
+          context_.check();
           return outcome.growth < bound;
         },
         search_near(limit.predicted));
@@ -203,7 +197,7 @@ class LimitMeasurement {
       step *= 1.0 + 1e-9;  // growth may jump where a gap begins
       // Modes of nearly the same growth would blur it.
       const GrowthExperiment::Outcome outcome = critical_mode(step).value_or(experiment).run(step, steps);
-      if (outcome.is_interrupted) throw Interrupted{};
+      context_.check();
       limit.growth_ratios.push_back(outcome.rate / std::log(growth_at(modes, step)));
       limit.steps = steps;
     }
@@ -218,20 +212,18 @@ class LimitMeasurement {
   void observe_trajectory(StabilityLimit& limit) const {
     class Bound final : public Observer {
      public:
-      Bound(double bound, const SecondOrderSystem* system, const RunContext& context)
-          : bound_(bound), system_(system), context_(context) {}
+      Bound(double bound, const SecondOrderSystem* system) : bound_(bound), system_(system) {}
       bool observe(const StepView& view) override {
         const double size =
             system_ != nullptr ? view.state.tail(system_->degrees_of_freedom()).norm() : view.state.norm();
         exceeded_ = exceeded_ || !(size <= bound_);
-        return !exceeded_ && !context_.is_interrupted();
+        return !exceeded_;
       }
       bool exceeded() const { return exceeded_; }
 
      private:
       double bound_;
       const SecondOrderSystem* system_;
-      const RunContext& context_;
       bool exceeded_ = false;
     };
     Ivp ivp = ivp_;
@@ -252,13 +244,12 @@ class LimitMeasurement {
     constexpr double fewest = 40.0;
     limit.observed = analysis::largest_stable_step(
         [&](double step) {
-          stop_if_interrupted();
+          context_.check();
           const double steps = std::max(fewest, std::ceil(length / step));
           ivp.t1 = ivp.t0 + steps * step;
-          Bound bound(settings_.growth * spectrum_.largest_size, second_order, context_);
-          const Solution solution =
-              method_.integrator->solve(ivp, FixedStep{.step = step, .allow_short_last_step = false}, bound);
-          if (context_.is_interrupted()) throw Interrupted{};
+          Bound bound(settings_.growth * spectrum_.largest_size, second_order);
+          const Solution solution = context_.solve(
+              *method_.integrator, ivp, FixedStep{.step = step, .allow_short_last_step = false}, bound);
           return solution.status.ok() && !bound.exceeded();
         },
         {.first = first_step * unit(),
@@ -281,7 +272,7 @@ class LimitMeasurement {
         {.first = first_step * unit(), .ratio = 1.01, .farthest = far * unit(), .resolution = 1e-9});
     limit.monotone_observed = analysis::largest_stable_step(
         [&](double step) {
-          stop_if_interrupted();
+          context_.check();
           return !analysis::changes_sign(*method_.integrator, system_, step, steps);
         },
         {.first = first_step * unit(), .ratio = 1.1, .farthest = far * unit(), .resolution = 1e-6});

@@ -11,8 +11,7 @@ namespace {
 /// Notes the state at evenly spaced times and the largest speed.
 class TrajectorySamples final : public Observer {
  public:
-  TrajectorySamples(const Ivp& ivp, std::int64_t count, const RunContext& context)
-      : system_(ivp.system->second_order()), context_(context) {
+  TrajectorySamples(const Ivp& ivp, std::int64_t count) : system_(ivp.system->second_order()) {
     for (std::int64_t k = 0; k < count; ++k) {
       times_.push_back(ivp.t0 + (ivp.t1 - ivp.t0) * static_cast<double>(k) / static_cast<double>(count - 1));
     }
@@ -28,7 +27,7 @@ class TrajectorySamples final : public Observer {
         view.interpolate(times_[states_.size()], state);
       states_.push_back(std::move(state));
     }
-    return !context_.is_interrupted();
+    return true;
   }
 
   const std::vector<double>& times() const { return times_; }
@@ -37,7 +36,6 @@ class TrajectorySamples final : public Observer {
 
  private:
   const SecondOrderSystem* system_;
-  const RunContext& context_;
   std::vector<double> times_;
   std::vector<Vector> states_;
   double largest_size_ = 0.0;
@@ -51,10 +49,9 @@ ProblemSpectrum find_spectrum(const Ivp& ivp, const Integrator& tracer, const Li
   std::vector<Vector> states = {ivp.y0};
   spectrum.times = {ivp.t0};
   if (!spectrum.is_linear) {
-    TrajectorySamples samples(ivp, settings.samples, context);
-    const Solution solution =
-        tracer.solve(ivp, AdaptiveStep{.relative_tolerance = 1e-5, .absolute_tolerance = 1e-7}, samples);
-    if (context.is_interrupted()) throw Interrupted{};
+    TrajectorySamples samples(ivp, settings.samples);
+    const Solution solution = context.solve(
+        tracer, ivp, AdaptiveStep{.relative_tolerance = 1e-5, .absolute_tolerance = 1e-7}, samples);
     if (!solution.status.ok()) {
       spectrum.failure = "no trajectory to take J along: " + solution.status.describe();
       return spectrum;
@@ -64,7 +61,7 @@ ProblemSpectrum find_spectrum(const Ivp& ivp, const Integrator& tracer, const Li
     spectrum.largest_size = samples.largest_size();
   }
   for (std::size_t k = 0; k < states.size(); ++k) {
-    if (context.is_interrupted()) throw Interrupted{};
+    context.check();
     spectrum.modes.push_back(
         analysis::linear_modes(*ivp.system, spectrum.times[k], states[k], settings.largest_dense));
     if (!spectrum.modes.back().status.ok()) {

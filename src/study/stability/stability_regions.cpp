@@ -22,10 +22,6 @@ double at(double from, double to, std::int64_t k, std::int64_t count) {
   return from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
 }
 
-void stop_if_interrupted(const RunContext& context) {
-  if (context.is_interrupted()) throw Interrupted{};
-}
-
 /// The length of the interval of stability along an axis, from growth alone.
 double interval(const std::function<double(double)>& growth) {
   constexpr double rounding = 1e-9;
@@ -44,7 +40,7 @@ void add_grid(const SchemeGrowth& growth, const RegionSettings& settings, const 
     imaginary.push_back(at(settings.imaginary_from, settings.imaginary_to, k, n));
   }
   for (const double y : imaginary) {
-    stop_if_interrupted(context);
+    context.check();
     for (const double x : real) {
       const double factor = growth.of_eigenvalue({x, y});
       size.push_back(factor);
@@ -121,8 +117,8 @@ void judge(const StabilityMethod& method, CaseResult& result) {
   analysis::verify_stability_limits(scheme, checks);
   std::vector<std::string> found;
   for (const analysis::PropertyCheck& check : checks) {
-    if (check.finding == analysis::Finding::not_applicable) continue;
-    const bool fails = check.finding == analysis::Finding::fails;
+    if (check.verdict == Verdict::not_applicable) continue;
+    const bool fails = check.verdict == Verdict::fails;
     if (fails) result.verdict = Verdict::fails;
     if (!fails && result.verdict == Verdict::not_applicable) result.verdict = Verdict::holds;
     found.push_back(fmt::format("{}: {}{}{}", check.property, check.measured,
@@ -135,11 +131,6 @@ void judge(const StabilityMethod& method, CaseResult& result) {
 
 }  // namespace
 
-std::string RegionSettings::text() const {
-  return fmt::format("real = [{}, {}]\nimaginary = [{}, {}]\npoints = {}\n", real_from, real_to,
-                     imaginary_from, imaginary_to, points);
-}
-
 CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& settings,
                            const RunContext& context) {
   CaseResult result;
@@ -149,13 +140,13 @@ CaseResult run_region_case(const StabilityMethod& method, const RegionSettings& 
   row.method = method.call;
   row.basis = to_string(growth.basis());
   fill_numbers(method, growth, row);
-  stop_if_interrupted(context);
+  context.check();
   judge(method, result);
   add_grid(growth, settings, context, result);
   add_axes(growth, settings, result);
   if (const auto* formula = std::get_if<schemes::MultistepFormula>(&method.data))
     add_root_locus(*formula, result);
-  row.add_to(result);
+  result.summary = cells_of(row);
   return result;
 }
 

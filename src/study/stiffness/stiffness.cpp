@@ -5,64 +5,118 @@
 #include <algorithm>
 #include <cmath>
 
+#include "settings/identity_text.hpp"
 #include "study/problem_spec.hpp"
 #include "study/stiffness/stiffness_cases.hpp"
 
 namespace fw::study {
 
+void declare(settings::Archive& a, OperationCosts& costs) {
+  const auto cost = [&a](const char* name, double& value, const char* doc) {
+    a(settings::setting(name, value).unit("1").nonnegative().doc(doc));
+  };
+  cost("jacobian", costs.jacobian, "assembling J or the tangent matrices");
+  cost("jacobian_product", costs.jacobian_product, "");
+  cost("factorisation", costs.factorisation, "");
+  cost("linear_solve", costs.linear_solve, "with a factorisation at hand");
+  cost("linear_iteration", costs.linear_iteration, "");
+}
+
+void declare(settings::Archive& a, StiffnessSettings& s) {
+  using settings::setting;
+  a(setting("target_error", s.target_error)
+        .unit("1")
+        .positive()
+        .doc("relative error whose cost is measured"));
+  a(setting("fewest_steps", s.fewest_steps)
+        .integers(1, 1'000'000)
+        .doc("where the search begins; the map's coarsest step as well"));
+  a(setting("max_evaluations", s.max_evaluations)
+        .integers(100, 10'000'000'000)
+        .quick_at_most(50'000)
+        .doc("right-hand sides of a run"));
+  a(setting("bracket", s.bracket).unit("1").above(1.0).doc("the number of steps is found to this factor"));
+  a(setting("first_tolerance", s.first_tolerance).unit("1").positive().doc("relative, of adaptive methods"));
+  a(setting("smallest_tolerance", s.smallest_tolerance).unit("1").positive().doc("likewise"));
+  a(setting("tolerance_ratio", s.tolerance_ratio).unit("1").above(1.0).doc("of successive tolerances"));
+  a(setting("absolute_over_relative", s.absolute_over_relative)
+        .unit("SI")
+        .positive()
+        .doc("absolute tolerance in units of the relative one"));
+  a(setting("fit_range", s.fit_range)
+        .unit("1")
+        .above(1.0)
+        .doc("the exponent is fitted where \\|λ\\| is at most this factor below its largest"));
+  a(setting("exponent_tolerance", s.exponent_tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|exponent − 1\\| of steps over \\|λ\\| that holds"));
+  a(setting("cost_uncertainty", s.cost_uncertainty)
+        .unit("1")
+        .above(1.0)
+        .doc("factor by which the operation costs may be off"));
+  a.section({"operation_costs", "What operations cost, in right-hand sides."}, s.costs);
+  a(setting("repetitions", s.timing.repetitions).integers(1, 1000).quick_fixed(1).doc("of each timing"));
+  a(setting("shortest_sample", s.timing.shortest_sample)
+        .unit("s")
+        .positive()
+        .doc("a shorter run is repeated within a sample; 1e-4 with `--quick`"));
+  a(setting("longest_timing", s.timing.longest_total)
+        .unit("s")
+        .positive()
+        .doc("a longer run gets fewer samples, but one at least"));
+  a(setting("map_levels", s.map_levels).integers(2, 30).doc("steps of the map, each half the one before"));
+  a(setting("stiff_product", s.stiff_product).unit("1").positive().doc("h\\|λ\\| above counts as stiff"));
+  a(setting("nonstiff_product", s.nonstiff_product)
+        .unit("1")
+        .positive()
+        .doc("h\\|λ\\| below counts as not stiff"));
+  a(setting("order_tolerance", s.order_tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|observed − predicted order\\| that holds"));
+}
+
 namespace {
 
-double ratio_above_one(const CheckedTable& table, const std::string& key, double value) {
-  const double ratio = table.number_or(key, value, NumberRule::positive);
-  if (ratio <= 1.0) table.fail(key, fmt::format("found {}, expected more than 1", ratio));
-  return ratio;
-}
+using settings::Archive;
+using settings::choice;
+using settings::setting;
 
-void read_costs(const CheckedTable& table, OperationCosts& costs) {
-  const std::pair<const char*, double*> keys[] = {{"jacobian", &costs.jacobian},
-                                                  {"jacobian_product", &costs.jacobian_product},
-                                                  {"factorisation", &costs.factorisation},
-                                                  {"linear_solve", &costs.linear_solve},
-                                                  {"linear_iteration", &costs.linear_iteration}};
-  for (const auto& [key, value] : keys) *value = table.number_or(key, *value, NumberRule::nonnegative);
-}
+/// What the cases of a study measure.
+enum class Measures { both, cost, orders };
 
-StiffnessSettings read_settings(const CheckedTable& spec, bool quick) {
+struct Spec {
+  MethodPatterns methods;
   StiffnessSettings settings;
-  const CheckedTable table = spec.table_or_empty("stiffness");
-  const auto positive = [&table](const std::string& key, double& value) {
-    value = table.number_or(key, value, NumberRule::positive);
-  };
-  positive("target_error", settings.target_error);
-  settings.fewest_steps = table.integer_or("fewest_steps", settings.fewest_steps, 1, 1'000'000);
-  settings.max_evaluations =
-      table.integer_or("max_evaluations", settings.max_evaluations, 100, 10'000'000'000);
-  settings.bracket = ratio_above_one(table, "bracket", settings.bracket);
-  positive("first_tolerance", settings.first_tolerance);
-  positive("smallest_tolerance", settings.smallest_tolerance);
-  settings.tolerance_ratio = ratio_above_one(table, "tolerance_ratio", settings.tolerance_ratio);
-  positive("absolute_over_relative", settings.absolute_over_relative);
-  settings.fit_range = ratio_above_one(table, "fit_range", settings.fit_range);
-  positive("exponent_tolerance", settings.exponent_tolerance);
-  settings.cost_uncertainty = ratio_above_one(table, "cost_uncertainty", settings.cost_uncertainty);
-  read_costs(table.table_or_empty("operation_costs"), settings.costs);
-  settings.timing.repetitions = table.integer_or("repetitions", settings.timing.repetitions, 1, 1000);
-  positive("shortest_sample", settings.timing.shortest_sample);
-  positive("longest_timing", settings.timing.longest_total);
-  settings.map_levels = table.integer_or("map_levels", settings.map_levels, 2, 30);
-  positive("stiff_product", settings.stiff_product);
-  positive("nonstiff_product", settings.nonstiff_product);
-  positive("order_tolerance", settings.order_tolerance);
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t repetitions = shrunk.integer_or("repetitions", 1, 1, 1000);
-  const std::int64_t evaluations = shrunk.integer_or(
-      "max_evaluations", std::min<std::int64_t>(settings.max_evaluations, 50'000), 100, 10'000'000'000);
-  if (quick) {
-    settings.timing.repetitions = repetitions;
-    settings.max_evaluations = evaluations;
-    settings.timing.shortest_sample = 1e-4;
-  }
-  return settings;
+  Measures measures = Measures::both;
+  ReferenceArithmetic arithmetic = ReferenceArithmetic::binary64;
+  std::vector<FamilySpec> problems;
+  std::int64_t quick_values = 7;
+};
+
+/// The section [stiffness], of which two keys are no settings of a case.
+struct StiffnessSection {
+  Spec& spec;
+};
+
+void declare(Archive& a, StiffnessSection& section) {
+  declare(a, section.spec.settings);
+  a(choice("measure", section.spec.measures,
+           {{"both", Measures::both}, {measures_cost, Measures::cost}, {measures_orders, Measures::orders}})
+        .selects_cases()
+        .doc("the cost over stiffness, the orders over step and stiffness, or both"));
+  a(choice("reference", section.spec.arithmetic,
+           {{"binary128", ReferenceArithmetic::binary128}, {"binary64", ReferenceArithmetic::binary64}})
+        .doc("arithmetic of the certified references"));
+}
+
+void declare(Archive& a, Spec& spec) {
+  declare(a, spec.methods);
+  StiffnessSection section{spec};
+  a.section({"stiffness", "The search for the cost, its timing, and the map of orders."}, section);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section([&] { a(setting("values", spec.quick_values).at_least(2).doc("members of a family")); });
 }
 
 /// Every `stride`-th member, and the last one.
@@ -93,35 +147,34 @@ ReadFamily share(ProblemFamily& read, ReferenceArithmetic arithmetic) {
   family->is_prothero_robinson = true;
   for (StudyProblem& member : read.members) {
     identity += member.identity;
-    family->is_prothero_robinson = family->is_prothero_robinson && member.problem.name == "prothero_robinson";
+    family->is_prothero_robinson =
+        family->is_prothero_robinson && member.problem.test_equation == TestEquation::prothero_robinson;
     family->members.push_back(std::make_shared<const SharedProblem>(std::move(member), arithmetic));
   }
   return {std::move(family), std::move(identity)};
 }
 
-void read_stiffness(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const StiffnessSettings settings = read_settings(spec, quick);
-  const CheckedTable table = spec.table_or_empty("stiffness");
-  const std::string measure = table.choice_or("measure", "both", {"both", measures_cost, measures_orders});
-  const std::string reference = table.choice_or("reference", "binary64", {"binary128", "binary64"});
-  const ReferenceArithmetic arithmetic =
-      reference == "binary128" ? ReferenceArithmetic::binary128 : ReferenceArithmetic::binary64;
-  const std::int64_t quick_values = spec.table_or_empty("quick").integer_or("values", 7, 2);
+void plan_stiffness(const Spec& spec, const StudyInput& input, Plan& plan) {
+  const Catalog& catalog = input.catalog;
+  StiffnessSettings settings = spec.settings;
+  if (input.is_quick) settings.timing.shortest_sample = 1e-4;
+  const std::string settings_text = settings::identity_text(settings);
+  const char* reference = spec.arithmetic == ReferenceArithmetic::binary128 ? "binary128" : "binary64";
   std::vector<std::shared_ptr<const StiffnessMethod>> methods;
-  for (const std::string& call : read_method_patterns(spec, catalog)) {
+  for (const std::string& call : expanded(spec.methods, input)) {
     methods.push_back(std::make_shared<const StiffnessMethod>(
-        StiffnessMethod{call, catalog.method(call), catalog.scheme_data(call)}));
+        StiffnessMethod{call, catalog.method(call), catalog.theory(call).coefficients}));
   }
-  for (ProblemFamily& read : read_problem_families(spec, catalog, plan.warnings)) {
-    if (quick) thin_out(read, quick_values);
-    const auto [family, members] = share(read, arithmetic);
+  for (ProblemFamily& read : make_families(spec.problems, input, plan.warnings)) {
+    if (input.is_quick) thin_out(read, spec.quick_values);
+    const auto [family, members] = share(read, spec.arithmetic);
     const std::string identity =
         fmt::format("stiffness\n{}parameter = {}\nvalues = {}\nreference = {}\n{}", members,
-                    family->parameter, fmt::join(family->values, " "), reference, settings.text());
+                    family->parameter, fmt::join(family->values, " "), reference, settings_text);
     for (const auto& method : methods) {
       const std::string name = family->label + "-" + method->call;
       const std::string text = identity + "method = " + method->call + "\n";
-      if (measure != measures_orders) {
+      if (spec.measures != Measures::orders) {
         plan.cases.push_back({.id = group_name(name + "-cost"),
                               .identity = text + "cost\n",
                               .run =
@@ -130,7 +183,7 @@ void read_stiffness(const CheckedTable& spec, const Catalog& catalog, bool quick
                                   },
                               .is_timed = true});
       }
-      if (measure != measures_cost && method->integrator->info().has_fixed_step) {
+      if (spec.measures != Measures::cost && method->integrator->info().has_fixed_step) {
         plan.cases.push_back({.id = group_name(name + "-orders"),
                               .identity = text + "orders\n",
                               .run = [family = family, method, settings](const RunContext& context) {
@@ -150,12 +203,17 @@ void read_stiffness(const CheckedTable& spec, const Catalog& catalog, bool quick
 }  // namespace
 
 StudyKind stiffness_kind() {
-  return {.name = "stiffness",
-          .title = "Stiffness",
-          .description =
-              "what a given accuracy costs over decades of stiffness, where implicit methods begin to pay, "
-              "stiffness ratio and index, and the observed order over step and stiffness",
-          .read = read_stiffness};
+  return declared_kind<Spec>(
+      {.name = "stiffness",
+       .title = "Stiffness",
+       .description =
+           "what a given accuracy costs over decades of stiffness, where implicit methods begin to "
+           "pay, stiffness ratio and index, and the observed order over step and stiffness",
+       .summary = columns_of<StiffnessRow>(),
+       .verdict_meaning = "of costs: the steps of an explicit scheme grow like abs(λ); of orders: both "
+                          "observed orders are the predicted ones",
+       .reason_meaning = ""},
+      plan_stiffness);
 }
 
 }  // namespace fw::study

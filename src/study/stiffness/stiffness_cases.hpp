@@ -33,9 +33,8 @@ struct StiffnessSettings {
   double stiff_product = 100.0;   ///< h|λ| above counts as stiff
   double nonstiff_product = 0.5;  ///< h|λ| below counts as not stiff
   double order_tolerance = 0.15;  ///< |observed − predicted order| that still holds
-
-  std::string text() const;
 };
+void declare(settings::Archive& a, StiffnessSettings& settings);
 
 /// Members of a family, with the values of what is varied.
 struct StiffnessFamily {
@@ -73,8 +72,7 @@ struct StiffnessRow {
   Figure crossing_cost{}, crossing_seconds{};
 };
 
-/// Writes the row with the verdict and reason of the result.
-void add_stiffness_summary(CaseResult& result, const StiffnessRow& row);
+void declare(SummaryRow& a, const StiffnessRow& row);
 
 /// The cost of the target error for every member.
 CaseResult run_stiffness_cost(const StiffnessFamily& family, const StiffnessMethod& method,

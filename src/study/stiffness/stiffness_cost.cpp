@@ -228,7 +228,7 @@ class CostCase {
     row.points = static_cast<std::int64_t>(
         std::count_if(found_.begin(), found_.end(), [](const Found& f) { return f.reached; }));
     if (law_.valid) row.step_exponent = {law_.exponent, law_.exponent_low, law_.exponent_high};
-    add_stiffness_summary(result, row);
+    result.summary = cells_of(row);
     return result;
   }
 

@@ -195,11 +195,7 @@ class OrderMap {
     return conclude(holds ? Verdict::holds : Verdict::fails, reason);
   }
 
-  int classical_order() const {
-    const SecondOrderSystem* system = family_.members.front()->ivp().system->second_order();
-    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
-    return has_velocity_forces ? info().order_with_velocity_forces : info().order;
-  }
+  int classical_order() const { return order_on(info(), *family_.members.front()->ivp().system); }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {
     CaseResult result;
@@ -220,7 +216,7 @@ class OrderMap {
     row.nonstiff_order = figure(nonstiff_);
     row.stiff_order = figure(stiff_);
     if (prediction_.valid) row.predicted_stiff_order = prediction_.order;
-    add_stiffness_summary(result, row);
+    result.summary = cells_of(row);
     return result;
   }
 

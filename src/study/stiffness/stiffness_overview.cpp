@@ -104,12 +104,12 @@ CaseResult run_stiffness_overview(const StiffnessFamily& family, const RunContex
                     {"stiffness_ratio", "1", ratio, {}, {}},
                     {"eigenvalue_ratio", "1", spread, {}, {}}};
   result.reason = index_in_words(result);
-  add_stiffness_summary(result, {.problem = family.label,
-                                 .method = "overview",
-                                 .measure = measures_overview,
-                                 .stepping = "",
-                                 .parameter = family.parameter,
-                                 .points = static_cast<std::int64_t>(family.members.size())});
+  result.summary = cells_of(StiffnessRow{.problem = family.label,
+                                         .method = "overview",
+                                         .measure = measures_overview,
+                                         .stepping = "",
+                                         .parameter = family.parameter,
+                                         .points = static_cast<std::int64_t>(family.members.size())});
   return result;
 }
 
@@ -127,7 +127,6 @@ void conclude_stiffness(StudyResult& study) {
     cross(*family.overview, family.costs, "seconds", "s", "seconds");
     // Without what the machine measured: a reason is the same whenever a study runs.
     family.overview->reason = fmt::format("{}; {}", index_in_words(*family.overview), by_cost);
-    replace_cell(*family.overview, "reason", family.overview->reason);
   }
 }
 

@@ -1,44 +1,35 @@
-#include <fmt/format.h>
-
 #include "study/stiffness/stiffness_cases.hpp"
 
 namespace fw::study {
 
-std::string StiffnessSettings::text() const {
-  return fmt::format(
-             "target_error = {}\nfewest_steps = {}\nmax_evaluations = {}\nbracket = {}\nfirst_tolerance = "
-             "{}\nsmallest_tolerance = {}\ntolerance_ratio = {}\nabsolute_over_relative = "
-             "{}\nfit_range = {}\nexponent_tolerance = {}\ncost_uncertainty = {}\n",
-             target_error, fewest_steps, max_evaluations, bracket, first_tolerance, smallest_tolerance,
-             tolerance_ratio, absolute_over_relative, fit_range, exponent_tolerance, cost_uncertainty) +
-         fmt::format(
-             "jacobian = {}\njacobian_product = {}\nfactorisation = {}\nlinear_solve = {}\nlinear_iteration "
-             "= {}\nrepetitions = {}\nshortest_sample = {}\nlongest_timing = {}\n",
-             costs.jacobian, costs.jacobian_product, costs.factorisation, costs.linear_solve,
-             costs.linear_iteration, timing.repetitions, timing.shortest_sample, timing.longest_total) +
-         fmt::format("map_levels = {}\nstiff_product = {}\nnonstiff_product = {}\norder_tolerance = {}\n",
-                     map_levels, stiff_product, nonstiff_product, order_tolerance);
-}
-
-void add_stiffness_summary(CaseResult& result, const StiffnessRow& row) {
-  result.summary = {{"problem", "", row.problem},     {"method", "", row.method},
-                    {"measure", "", row.measure},     {"stepping", "", row.stepping},
-                    {"parameter", "", row.parameter}, {"points", "1", row.points}};
-  const auto add = [&result](const std::string& name, const std::string& unit,
-                             const StiffnessRow::Figure& figure) {
-    result.summary.push_back({name, unit, figure.value});
-    result.summary.push_back({name + "_low", unit, figure.low});
-    result.summary.push_back({name + "_high", unit, figure.high});
-  };
-  add("step_exponent", "1", row.step_exponent);
-  result.summary.push_back({"classical_order", "1", row.classical_order});
-  add("nonstiff_order", "1", row.nonstiff_order);
-  result.summary.push_back({"predicted_stiff_order", "1", row.predicted_stiff_order});
-  add("stiff_order", "1", row.stiff_order);
-  add("crossing_cost", "SI", row.crossing_cost);
-  add("crossing_seconds", "SI", row.crossing_seconds);
-  result.summary.push_back({"verdict", "", std::string(to_string(result.verdict))});
-  result.summary.push_back({"reason", "", result.reason});
+void declare(SummaryRow& a, const StiffnessRow& row) {
+  a("problem", "", row.problem, "label of the family");
+  a("method", "", row.method, "as in the study; `overview`");
+  a("measure", "", row.measure, "`cost`, `orders` or `overview`");
+  a("stepping", "", row.stepping, "`explicit`, `exponential`, `implicit`; empty of overviews");
+  a("parameter", "", row.parameter, "what is varied");
+  a("points", "1", row.points, "values that reached the target; points in both fits; members");
+  a("step_exponent", "1", row.step_exponent.value,
+    "e of steps ~ abs(λ)^e over the stiffest members; NaN of other cases, like all that follows");
+  a("step_exponent_low", "1", row.step_exponent.low, "lower end of the 95 % interval");
+  a("step_exponent_high", "1", row.step_exponent.high, "upper end");
+  a("classical_order", "1", row.classical_order, "of the method by theory; 0: variable, or an overview");
+  a("nonstiff_order", "1", row.nonstiff_order.value, "observed where h abs(λ) is small");
+  a("nonstiff_order_low", "1", row.nonstiff_order.low, "lower end");
+  a("nonstiff_order_high", "1", row.nonstiff_order.high, "upper end");
+  a("predicted_stiff_order", "1", row.predicted_stiff_order,
+    "by the scheme's coefficients; NaN where there is no prediction");
+  a("stiff_order", "1", row.stiff_order.value, "observed where h abs(λ) is large");
+  a("stiff_order_low", "1", row.stiff_order.low, "lower end");
+  a("stiff_order_high", "1", row.stiff_order.high, "upper end");
+  a("crossing_cost", "SI", row.crossing_cost.value,
+    "value of the parameter from which the cheapest implicit method costs less than the cheapest explicit "
+    "one, in operations; NaN if not exactly once");
+  a("crossing_cost_low", "SI", row.crossing_cost.low, "lower end");
+  a("crossing_cost_high", "SI", row.crossing_cost.high, "upper end");
+  a("crossing_seconds", "SI", row.crossing_seconds.value, "the same in seconds");
+  a("crossing_seconds_low", "SI", row.crossing_seconds.low, "lower end");
+  a("crossing_seconds_high", "SI", row.crossing_seconds.high, "upper end");
 }
 
 }  // namespace fw::study

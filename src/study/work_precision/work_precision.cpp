@@ -2,67 +2,120 @@
 
 #include <fmt/format.h>
 
+#include "settings/identity_text.hpp"
 #include "study/problem_spec.hpp"
 #include "study/work_precision/work_precision_case.hpp"
 
 namespace fw::study {
 
+void declare(settings::Archive& a, WorkPrecisionSettings& s) {
+  using settings::setting;
+  a(setting("levels", s.levels).integers(1, 1000).doc("rungs of a ladder at most"));
+  a(setting("step_ratio", s.step_ratio).unit("1").above(1.0).doc("of successive constant steps"));
+  a(setting("tolerance_ratio", s.tolerance_ratio).unit("1").above(1.0).doc("of successive tolerances"));
+  a(setting("fewest_steps", s.fewest_steps)
+        .integers(1, 1'000'000'000)
+        .doc("where the search for the coarsest step begins"));
+  a(setting("start_error", s.start_error)
+        .unit("1")
+        .positive()
+        .doc("relative error at the coarsest step, found by doubling the number of steps"));
+  a(setting("finest_error", s.finest_error).unit("1").positive().doc("a ladder ends below"));
+  a(setting("first_tolerance", s.first_tolerance).unit("1").positive().doc("relative"));
+  a(setting("smallest_tolerance", s.smallest_tolerance).unit("1").positive().doc("relative"));
+  a(setting("absolute_over_relative", s.absolute_over_relative)
+        .unit("SI")
+        .positive()
+        .doc("absolute tolerance in units of the relative one"));
+  a(setting("max_evaluations", s.max_evaluations)
+        .integers(100, 10'000'000'000)
+        .quick_at_most(2000)
+        .doc("right-hand sides of a run"));
+  a(setting("max_factorisations", s.max_factorisations)
+        .integers(1, 10'000'000'000)
+        .doc("of a run; a ladder ends where the next one would need more"));
+  a(setting("target_error", s.target_error)
+        .unit("1")
+        .positive()
+        .doc("relative error: what it costs stands in the summary, interpolated"));
+  a(setting("fit_error", s.fit_error)
+        .unit("1")
+        .positive()
+        .doc("relative: larger errors are no part of the fit"));
+  a(setting("tolerance", s.tolerance)
+        .unit("1")
+        .positive()
+        .doc("largest \\|efficiency order − order\\| that holds"));
+  a(setting("repetitions", s.timing.repetitions).integers(1, 1000).quick_fixed(1).doc("of each timing"));
+  a(setting("shortest_sample", s.timing.shortest_sample)
+        .unit("s")
+        .positive()
+        .doc("a shorter run is repeated within a sample; 1e-4 with `--quick`"));
+  a(setting("longest_timing", s.timing.longest_total)
+        .unit("s")
+        .positive()
+        .doc("a longer run gets fewer samples, but one at least"));
+}
+
 namespace {
 
-double ratio_above_one(const CheckedTable& table, const std::string& key, double value) {
-  const double ratio = table.number_or(key, value, NumberRule::positive);
-  if (ratio <= 1.0) table.fail(key, fmt::format("found {}, expected more than 1", ratio));
-  return ratio;
-}
+using settings::Archive;
+using settings::choice;
+using settings::setting;
 
-WorkPrecisionSettings read_settings(const CheckedTable& spec, bool quick) {
+/// The steppings of which each makes a ladder.
+enum class Controls { both, fixed, adaptive };
+
+struct Spec {
+  MethodPatterns methods;
   WorkPrecisionSettings settings;
-  const CheckedTable table = spec.table_or_empty("work_precision");
-  const auto positive = [&](const std::string& key, double& value) {
-    value = table.number_or(key, value, NumberRule::positive);
-  };
-  settings.levels = table.integer_or("levels", settings.levels, 1, 1000);
-  settings.step_ratio = ratio_above_one(table, "step_ratio", settings.step_ratio);
-  settings.tolerance_ratio = ratio_above_one(table, "tolerance_ratio", settings.tolerance_ratio);
-  settings.fewest_steps = table.integer_or("fewest_steps", settings.fewest_steps, 1, 1'000'000'000);
-  positive("start_error", settings.start_error);
-  positive("finest_error", settings.finest_error);
-  if (settings.finest_error >= settings.start_error) {
-    table.fail(table.has("finest_error") ? "finest_error" : "start_error",
-               fmt::format("found a finest error of {} and a start error of {}, expected it to be smaller",
-                           settings.finest_error, settings.start_error));
-  }
-  positive("first_tolerance", settings.first_tolerance);
-  positive("smallest_tolerance", settings.smallest_tolerance);
-  positive("absolute_over_relative", settings.absolute_over_relative);
-  settings.max_evaluations =
-      table.integer_or("max_evaluations", settings.max_evaluations, 100, 10'000'000'000);
-  settings.max_factorisations =
-      table.integer_or("max_factorisations", settings.max_factorisations, 1, 10'000'000'000);
-  positive("target_error", settings.target_error);
-  positive("fit_error", settings.fit_error);
-  positive("tolerance", settings.tolerance);
-  settings.timing.repetitions = table.integer_or("repetitions", settings.timing.repetitions, 1, 1000);
-  positive("shortest_sample", settings.timing.shortest_sample);
-  positive("longest_timing", settings.timing.longest_total);
-  const CheckedTable shrunk = spec.table_or_empty("quick");
-  const std::int64_t evaluations = shrunk.integer_or(
-      "max_evaluations", std::min<std::int64_t>(settings.max_evaluations, 2000), 100, 10'000'000'000);
-  const std::int64_t repetitions = shrunk.integer_or("repetitions", 1, 1, 1000);
-  if (quick) {
-    settings.max_evaluations = evaluations;
-    settings.timing.repetitions = repetitions;
-    settings.timing.shortest_sample = 1e-4;
-  }
-  return settings;
+  Controls controls = Controls::both;
+  ReferenceArithmetic arithmetic = ReferenceArithmetic::binary128;
+  std::vector<FamilySpec> problems;
+  std::optional<std::int64_t> quick_problems;
+};
+
+/// The section [work_precision], of which two keys are no settings of a ladder.
+struct WorkPrecisionSection {
+  Spec& spec;
+};
+
+void declare(Archive& a, WorkPrecisionSection& section) {
+  declare(a, section.spec.settings);
+  a(choice("control", section.spec.controls,
+           {{"both", Controls::both}, {"fixed", Controls::fixed}, {"adaptive", Controls::adaptive}})
+        .selects_cases()
+        .doc("methods that cannot are left out, at least one has to"));
+  a(choice("reference", section.spec.arithmetic,
+           {{"binary128", ReferenceArithmetic::binary128}, {"binary64", ReferenceArithmetic::binary64}})
+        .doc("`binary64` for systems too large for it: two methods of orders 8 and 7 in double, about 9 "
+             "digits"));
 }
 
-std::vector<LadderControl> read_controls(const CheckedTable& spec) {
-  const CheckedTable table = spec.table_or_empty("work_precision");
-  const std::string chosen = table.choice_or("control", "both", {"both", "fixed", "adaptive"});
-  if (chosen == "fixed") return {LadderControl::fixed};
-  if (chosen == "adaptive") return {LadderControl::adaptive};
+void declare(Archive& a, Spec& spec) {
+  declare(a, spec.methods);
+  WorkPrecisionSection section{spec};
+  a.section({"work_precision", "The ladders, what they may cost, and the fit."}, section);
+  a.sections(problem_sections, spec.problems);
+  a.quick_section([&] {
+    a(setting("problems", spec.quick_problems)
+          .at_least(1)
+          .default_text("all")
+          .doc("how many of the problems, from the first one"));
+  });
+}
+
+std::vector<LadderControl> ladder_controls(Controls controls) {
+  if (controls == Controls::fixed) return {LadderControl::fixed};
+  if (controls == Controls::adaptive) return {LadderControl::adaptive};
   return {LadderControl::fixed, LadderControl::adaptive};
+}
+
+void check(const WorkPrecisionSettings& settings, const CheckedTable& table) {
+  if (settings.finest_error < settings.start_error) return;
+  table.fail(table.has("finest_error") ? "finest_error" : "start_error",
+             fmt::format("found a finest error of {} and a start error of {}, expected it to be smaller",
+                         settings.finest_error, settings.start_error));
 }
 
 bool can_run(const MethodInfo& info, LadderControl control) {
@@ -83,28 +136,29 @@ void require_a_ladder(const CheckedTable& spec, const Catalog& catalog,
                         to_string(controls.front())));
 }
 
-void read_work_precision(const CheckedTable& spec, const Catalog& catalog, bool quick, Plan& plan) {
-  const WorkPrecisionSettings settings = read_settings(spec, quick);
-  const std::vector<LadderControl> controls = read_controls(spec);
-  const std::string reference =
-      spec.table_or_empty("work_precision").choice_or("reference", "binary128", {"binary128", "binary64"});
-  const ReferenceArithmetic arithmetic =
-      reference == "binary128" ? ReferenceArithmetic::binary128 : ReferenceArithmetic::binary64;
-  const std::vector<std::string> methods = read_method_patterns(spec, catalog);
+void plan_work_precision(const Spec& study, const StudyInput& input, Plan& plan) {
+  const CheckedTable& spec = input.file;
+  const Catalog& catalog = input.catalog;
+  WorkPrecisionSettings settings = study.settings;
+  check(settings, input.section("work_precision"));
+  if (input.is_quick) settings.timing.shortest_sample = 1e-4;
+  const std::vector<LadderControl> controls = ladder_controls(study.controls);
+  const char* reference = study.arithmetic == ReferenceArithmetic::binary128 ? "binary128" : "binary64";
+  const std::vector<std::string> methods = expanded(study.methods, input);
   require_a_ladder(spec, catalog, methods, controls);
   std::vector<StudyProblem> problems;
-  for (ProblemFamily& family : read_problem_families(spec, catalog, plan.warnings)) {
+  for (ProblemFamily& family : make_families(study.problems, input, plan.warnings)) {
     for (StudyProblem& member : family.members) problems.push_back(std::move(member));
   }
-  const std::int64_t quick_problems =
-      spec.table_or_empty("quick").integer_or("problems", static_cast<std::int64_t>(problems.size()), 1);
-  if (quick && static_cast<std::int64_t>(problems.size()) > quick_problems) {
-    problems.resize(static_cast<std::size_t>(quick_problems));
-  }
+  const auto all = static_cast<std::int64_t>(problems.size());
+  if (!study.quick_problems) TomlTree(input.resolved).table("quick").set("problems", all);
+  const std::int64_t quick_problems = study.quick_problems.value_or(all);
+  if (input.is_quick && all > quick_problems) problems.resize(static_cast<std::size_t>(quick_problems));
   for (StudyProblem& entry : problems) {
-    const auto problem = std::make_shared<const SharedProblem>(std::move(entry), arithmetic);
-    const std::string identity = fmt::format("work_precision\n{}reference = {}\n{}",
-                                             problem->entry().identity, reference, settings.text());
+    const auto problem = std::make_shared<const SharedProblem>(std::move(entry), study.arithmetic);
+    const std::string identity =
+        fmt::format("work_precision\n{}reference = {}\n{}", problem->entry().identity, reference,
+                    settings::identity_text(settings));
     for (const std::string& call : methods) {
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
       for (const LadderControl control : controls) {
@@ -127,12 +181,16 @@ void read_work_precision(const CheckedTable& spec, const Catalog& catalog, bool 
 }  // namespace
 
 StudyKind work_precision_kind() {
-  return {.name = "work_precision",
-          .title = "Error against work",
-          .description =
-              "the true error over a ladder of steps or tolerances against right-hand sides, Jacobians, "
-              "factorisations, iterations and seconds; efficiency orders; Pareto fronts over all methods",
-          .read = read_work_precision};
+  return declared_kind<Spec>(
+      {.name = "work_precision",
+       .title = "Error against work",
+       .description =
+           "the true error over a ladder of steps or tolerances against right-hand sides, Jacobians, "
+           "factorisations, iterations and seconds; efficiency orders; Pareto fronts over all methods",
+       .summary = work_precision_summary(),
+       .verdict_meaning = "of constant steps with constant work: the efficiency order is the method's order",
+       .reason_meaning = ""},
+      plan_work_precision);
 }
 
 }  // namespace fw::study

@@ -47,28 +47,28 @@ struct Row {
   std::int64_t points_on_front_evaluations = 0, points_on_front_seconds = 0;
 };
 
-void add_summary(CaseResult& result, const Row& row) {
+void declare(SummaryRow& a, const Row& row) {
   const bool valid = row.fit.valid;
-  result.summary = {{"problem", "", row.problem},
-                    {"method", "", row.method},
-                    {"family", "", row.family},
-                    {"control", "", row.control},
-                    {"expected_order", "1", row.expected_order},
-                    {"efficiency_order", "1", valid ? row.fit.order : none},
-                    {"efficiency_order_low", "1", valid ? row.fit.order_low : none},
-                    {"efficiency_order_high", "1", valid ? row.fit.order_high : none},
-                    {"correlation", "1", valid ? row.fit.correlation : none},
-                    {"points", "1", static_cast<std::int64_t>(row.fit.points)},
-                    {"smallest_error", "1", row.smallest_error},
-                    {"rhs_evaluations_at_target", "1", row.evaluations_at_target},
-                    {"seconds_at_target", "s", row.seconds_at_target},
-                    {"front_points_rhs_evaluations", "1", row.points_on_front_evaluations},
-                    {"front_points_seconds", "1", row.points_on_front_seconds},
-                    {"verdict", "", std::string(to_string(result.verdict))},
-                    {"reason", "", result.reason}};
+  a("problem", "", row.problem, "its label");
+  a("method", "", row.method, "as in the study; `Pareto front`");
+  a("family", "", row.family, "as in `federwerk list methods`; empty of fronts");
+  a("control", "", row.control, "`fixed` or `adaptive`; empty of fronts");
+  a("expected_order", "1", row.expected_order, "by theory; 0: variable");
+  a("efficiency_order", "1", valid ? row.fit.order : none,
+    "p of error ~ right-hand sides^-p; NaN where there is no fit");
+  a("efficiency_order_low", "1", valid ? row.fit.order_low : none, "lower end of the 95 % interval");
+  a("efficiency_order_high", "1", valid ? row.fit.order_high : none, "upper end");
+  a("correlation", "1", valid ? row.fit.correlation : none, "of the fit");
+  a("points", "1", static_cast<std::int64_t>(row.fit.points), "in the fit");
+  a("smallest_error", "1", row.smallest_error, "of the ladder");
+  a("rhs_evaluations_at_target", "1", row.evaluations_at_target,
+    "that the target error costs, interpolated; NaN where it is not reached");
+  a("seconds_at_target", "s", row.seconds_at_target, "likewise");
+  a("front_points_rhs_evaluations", "1", row.points_on_front_evaluations,
+    "points of the ladder on the front; of fronts: all");
+  a("front_points_seconds", "1", row.points_on_front_seconds, "likewise by seconds");
 }
-
-/// A ladder as it is run.
+/// A ladder as it is run./// A ladder as it is run.
 class Ladder {
  public:
   Ladder(const WorkPrecisionSpec& spec, const RunContext& context)
@@ -92,11 +92,7 @@ class Ladder {
   double length() const { return ivp().t1 - ivp().t0; }
   const MethodInfo& info() const { return spec_.integrator->info(); }
 
-  std::int64_t expected_order() const {
-    const SecondOrderSystem* system = ivp().system->second_order();
-    const bool has_velocity_forces = system != nullptr && system->force_class() == ForceClass::velocity;
-    return has_velocity_forces ? info().order_with_velocity_forces : info().order;
-  }
+  std::int64_t expected_order() const { return order_on(info(), *ivp().system); }
 
   /// A run without its timing; empty if it failed numerically.
   std::optional<Rung> try_run(const StepControl& control, double number) {
@@ -248,7 +244,7 @@ class Ladder {
         analysis::cost_at_error(numbers_of(result, "rhs_evaluations"), errors, settings_.target_error);
     row.seconds_at_target =
         analysis::cost_at_error(numbers_of(result, "seconds"), errors, settings_.target_error);
-    add_summary(result, row);
+    result.summary = cells_of(row);
     return result;
   }
 
@@ -291,16 +287,8 @@ class Ladder {
 
 }  // namespace
 
-std::string WorkPrecisionSettings::text() const {
-  return fmt::format(
-      "levels = {}\nstep_ratio = {}\ntolerance_ratio = {}\nfewest_steps = {}\nstart_error = {}\nfinest_error "
-      "= {}\nfirst_tolerance = {}\nsmallest_tolerance = {}\nabsolute_over_relative = {}\nmax_evaluations = "
-      "{}\nmax_factorisations = {}\ntarget_error = {}\nfit_error = {}\ntolerance = {}\nrepetitions = "
-      "{}\nshortest_sample = "
-      "{}\nlongest_timing = {}\n",
-      levels, step_ratio, tolerance_ratio, fewest_steps, start_error, finest_error, first_tolerance,
-      smallest_tolerance, absolute_over_relative, max_evaluations, max_factorisations, target_error,
-      fit_error, tolerance, timing.repetitions, timing.shortest_sample, timing.longest_total);
+std::vector<SummaryColumn> work_precision_summary() {
+  return columns_of<Row>();
 }
 
 std::string to_string(LadderControl control) {
@@ -321,7 +309,8 @@ CaseResult empty_front(const StudyProblem& problem) {
     result.columns.push_back({prefix + "_control", "", std::vector<std::string>{}, {}, {}});
   }
   result.reason = "the fronts are drawn at the end of the study";
-  add_summary(result, {.problem = problem.label, .method = front_method, .family = "", .control = ""});
+  result.summary =
+      cells_of(Row{.problem = problem.label, .method = front_method, .family = "", .control = ""});
   return result;
 }
 

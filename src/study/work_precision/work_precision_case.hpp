@@ -26,9 +26,8 @@ struct WorkPrecisionSettings {
   double fit_error = 3e-3;                   ///< relative: larger errors are no part of the fit
   double tolerance = 0.15;                   ///< |efficiency order − order| that still holds
   TimingRule timing;
-
-  std::string text() const;
 };
+void declare(settings::Archive& a, WorkPrecisionSettings& settings);
 
 /// How a method's steps are chosen in a case.
 enum class LadderControl { fixed, adaptive };
@@ -47,6 +46,9 @@ struct WorkPrecisionSpec {
 
 /// Runs the ladder and fits the efficiency order.
 CaseResult run_work_precision(const WorkPrecisionSpec& spec, const RunContext& context);
+
+/// The columns of the summary.
+std::vector<SummaryColumn> work_precision_summary();
 
 /// What stands for the method in the row of a front.
 inline const std::string front_method = "Pareto front";

@@ -97,7 +97,6 @@ void conclude_fronts(StudyResult& study) {
     // Without what the machine measured: a reason is the same whenever a study runs.
     problem.front->reason =
         fmt::format("not dominated by right-hand sides, cheapest first: {}", joined(by_evaluations));
-    replace_cell(*problem.front, "reason", problem.front->reason);
   }
 }
 

@@ -118,7 +118,7 @@ TEST(Arkode, TakesConstantStepsFarBeyondTheStiffness) {
 TEST(Arkode, InterpolatesBetweenItsSteps) {
   const Problem problem = problems::harmonic_oscillator();
   for (const auto& method : all_methods()) {
-    if (method->info().needs_force_splitting) continue;
+    if (method->info().needs.has(Capability::force_splitting)) continue;
     for (const StepControl& control :
          {StepControl(AdaptiveStep{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10}),
           StepControl(FixedStep{.step = (problem.ivp.t1 - problem.ivp.t0) / 1000})}) {
@@ -181,7 +181,7 @@ TEST(Arkode, HasTheJacobianOfTheStiffPart) {
 TEST(Arkode, GivesItsReasonWhereTheRightHandSideIsNoNumber) {
   NullObserver observer;
   for (const auto& method : all_methods()) {
-    if (method->info().needs_force_splitting) continue;
+    if (method->info().needs.has(Capability::force_splitting)) continue;
     for (const StepControl& control : {StepControl(AdaptiveStep{}), StepControl(FixedStep{.step = 0.03})}) {
       const Solution solution = method->solve(scalar_problem(BecomesNaN{}), control, observer);
       EXPECT_EQ(solution.status.code, StatusCode::non_finite) << solution.status.describe();
@@ -201,7 +201,7 @@ TEST(Arkode, GivesItsReasonWhereTheRightHandSideIsNoNumber) {
 TEST(Arkode, HandsOnAnExceptionOfTheRightHandSide) {
   NullObserver observer;
   for (const auto& method : all_methods()) {
-    if (method->info().needs_force_splitting) continue;
+    if (method->info().needs.has(Capability::force_splitting)) continue;
     EXPECT_THROW(method->solve(scalar_problem(Throws{}), AdaptiveStep{}, observer), std::runtime_error);
     EXPECT_THROW(method->solve(scalar_problem(Throws{}), FixedStep{.step = 0.03}, observer),
                  std::runtime_error);
@@ -232,7 +232,7 @@ TEST(Arkode, GivesItsReasonWhereNewtonDiverges) {
 TEST(Arkode, StopsAtABlowUpAndAtItsLimitOfSteps) {
   NullObserver observer;
   for (const auto& method : all_methods()) {
-    if (method->info().needs_force_splitting) continue;
+    if (method->info().needs.has(Capability::force_splitting)) continue;
     const Solution solution = method->solve(scalar_problem(BlowsUp{}), AdaptiveStep{}, observer);
     EXPECT_FALSE(solution.status.ok());
     EXPECT_NE(solution.status.code, StatusCode::library_failure) << solution.status.describe();

@@ -235,7 +235,6 @@ TEST(Cvode, ReportsAJacobianThatIsNotFinite) {
     void jacobian_product(double, ConstVectorRef, ConstVectorRef, VectorRef out) const override {
       out.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
-    const SecondOrderSystem* second_order() const override { return nullptr; }
   };
   Ivp ivp;
   ivp.system = std::make_shared<WrongJacobian>();

@@ -10,6 +10,7 @@
 #include "oracles/sundials/arkode_mri.hpp"
 #include "oracles/sundials/cvode.hpp"
 #include "oracles/sundials/ida.hpp"
+#include "paths.hpp"
 #include "scene/scene.hpp"
 
 namespace fw::oracles {
@@ -23,7 +24,7 @@ double end_time(const scene::Scene& scene) {
 std::vector<std::filesystem::path> scenes() {
   std::vector<std::filesystem::path> list;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(FEDERWERK_SOURCE_DIR) / "studies/scenes")) {
+       std::filesystem::directory_iterator(fw::test::source_directory() + "/studies/scenes")) {
     if (entry.path().extension() == ".toml") list.push_back(entry.path());
   }
   std::sort(list.begin(), list.end());

@@ -196,7 +196,6 @@ class HalfLine final : public SecondOrderSystem {
   const Vector& mass() const override { return mass_; }
   const std::vector<char>& fixed() const override { return fixed_; }
   ForceClass force_class() const override { return ForceClass::position; }
-  bool has_springs() const override { return false; }
   void force(double, ConstVectorRef q, ConstVectorRef, VectorRef f) const override {
     f[0] = q[0] > 2.0 ? 1.0 - q[0] : Beyond{}();
   }
@@ -211,7 +210,6 @@ class HalfLine final : public SecondOrderSystem {
   void damping(double, ConstVectorRef, ConstVectorRef, SparseMatrix&) const override {}
   void tangent_product(double, ConstVectorRef, ConstVectorRef, ConstVectorRef, ConstVectorRef,
                        VectorRef) const override {}
-  const ForceSplitting* force_splitting() const override { return nullptr; }
 
  private:
   Vector mass_ = Vector::Ones(1);

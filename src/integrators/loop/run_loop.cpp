@@ -1,0 +1,163 @@
+#include "integrators/loop/run_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/error.hpp"
+#include "integrators/loop/hermite_interpolant.hpp"
+#include "integrators/loop/run_checks.hpp"
+
+namespace fw::integrators {
+
+namespace {
+
+/// Some libraries only warn of steps below the rounding of t and would go on with them for ever.
+constexpr std::uint64_t most_steps_without_progress = 20;
+
+void serialise(StateArchive& archive, Work& work) {
+  archive.visit("right-hand sides", work.rhs_evaluations);
+  archive.visit("Jacobians", work.jacobian_evaluations);
+  archive.visit("Jacobian products", work.jacobian_products);
+  archive.visit("factorisations", work.factorisations);
+  archive.visit("linear solves", work.linear_solves);
+  archive.visit("linear iterations", work.linear_iterations);
+  archive.visit("Newton iterations", work.newton_iterations);
+  archive.visit("accepted steps", work.accepted_steps);
+  archive.visit("rejected steps", work.rejected_steps);
+  archive.visit("seconds", work.seconds);
+}
+
+/// One run on its way.
+class Loop {
+ public:
+  Loop(const MethodInfo& info, const Ivp& ivp, Observer& observer, const SolveOptions& options,
+       std::uint64_t maximum_steps)
+      : info_(info), ivp_(ivp), observer_(observer), options_(options), maximum_steps_(maximum_steps) {}
+
+  Solution run(const StepSourceFactory& make_source) {
+    solution_.time = ivp_.t0;
+    solution_.state = ivp_.y0;
+    const std::function<void(double, VectorRef)> nothing_yet;
+    if (options_.resume.empty() && !observer_.observe({0, ivp_.t0, ivp_.y0, false, nothing_yet})) {
+      solution_.status = {StatusCode::stopped_by_observer, "stopped at the start"};
+      return std::move(solution_);
+    }
+    const std::unique_ptr<StepSource> source = make_source(solution_.work);
+    if (!options_.resume.empty()) load(*source);
+    if (options_.checkpoints != nullptr) save(*source);  // refused now rather than after an hour
+    solution_.status = advance(*source);
+    source->collect_work(solution_.work);
+    return std::move(solution_);
+  }
+
+ private:
+  Status advance(StepSource& source) {
+    Vector y_new(ivp_.y0.size()), as_made;
+    const bool has_dense_output = source.has_dense_output();
+    HermiteInterpolant hermite(*ivp_.system, solution_.work);
+    const std::function<void(double, VectorRef)> interpolate = [&](double t, VectorRef out) {
+      if (has_dense_output) {
+        source.interpolate(t, out);
+      } else {
+        hermite(t, out);
+      }
+    };
+    double& t = solution_.time;
+    Vector& y = solution_.state;
+    for (;;) {
+      if (options_.stop.stop_requested()) {
+        return {StatusCode::interrupted, fmt::format("interrupted by the user at t = {:.6g}", t)};
+      }
+      LoopStep step{.index = steps_ + 1, .start = t};
+      if (Status status = source.propose(step); !status.ok()) return status;
+      if (steps_ + solution_.work.rejected_steps >= maximum_steps_) {
+        return {StatusCode::step_limit,
+                fmt::format("{} steps did not reach the end: stopped at t = {:.6g}", maximum_steps_, t)};
+      }
+      if (Status status = source.attempt(step, y, y_new); !status.ok()) return status;
+      if (!step.is_accepted) continue;
+      if (step.is_last) step.end = ivp_.t1;
+      if (Status status = check_state(y_new, step.end, step.index); !status.ok()) return status;
+      if (Status status = check_progress(step); !status.ok()) return status;
+      source.accept(step);
+      ++steps_;
+      ++solution_.work.accepted_steps;
+
+      Change change = Change::none;
+      if (options_.hook != nullptr) {
+        as_made = y_new;
+        change = options_.hook->on_accepted(step.end, y_new);
+        if (Status status = check_state(y_new, step.end, step.index); !status.ok()) return status;
+      }
+      if (!has_dense_output) {
+        hermite.set_step(step.start, step.end, y, options_.hook != nullptr ? as_made : y_new);
+      }
+      const bool go_on = observer_.observe({steps_, step.end, y_new, step.is_last, interpolate});
+      t = step.end;
+      y.swap(y_new);
+      if (step.is_last) return {};
+      if (!go_on) return {StatusCode::stopped_by_observer, fmt::format("stopped at t = {:.6g}", t)};
+      if (change != Change::none) source.restart(t, y);
+      if (options_.checkpoints != nullptr && options_.checkpoints->is_due(t)) {
+        save(source);
+        options_.checkpoints->take(t, writer_.bytes());
+      }
+    }
+  }
+
+  Status check_progress(const LoopStep& step) {
+    steps_without_progress_ = step.end > step.start ? 0 : steps_without_progress_ + 1;
+    if (steps_without_progress_ < most_steps_without_progress) return {};
+    return {StatusCode::step_too_small,
+            fmt::format("at t = {:.6g} the step fell below the rounding of t", step.end)};
+  }
+
+  void save(StepSource& source) {
+    writer_.clear();
+    const double seconds_before = solution_.work.seconds;  // of the run that this one continues
+    solution_.work.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+    serialise(writer_, source);
+    solution_.work.seconds = seconds_before;
+  }
+
+  void load(StepSource& source) {
+    StateReader reader(options_.resume);
+    serialise(reader, source);
+    reader.finish();
+  }
+
+  void serialise(StateArchive& archive, StepSource& source) {
+    archive.require_equal("method", info_.name);
+    archive.require_equal("start", ivp_.t0);
+    archive.require_equal("end time", ivp_.t1);
+    archive.visit("time", solution_.time);
+    archive.visit("state", solution_.state);
+    archive.visit("steps", steps_);
+    archive.visit("steps without progress", steps_without_progress_);
+    source.serialise(archive);
+    // Last: what a source evaluates to put itself back is not counted.
+    integrators::serialise(archive, solution_.work);
+  }
+
+  using Clock = std::chrono::steady_clock;
+
+  const Clock::time_point start_ = Clock::now();
+  const MethodInfo& info_;
+  const Ivp& ivp_;
+  Observer& observer_;
+  const SolveOptions& options_;
+  std::uint64_t maximum_steps_;
+  std::uint64_t steps_ = 0, steps_without_progress_ = 0;
+  Solution solution_;
+  StateWriter writer_;
+};
+
+}  // namespace
+
+Solution run_loop(const MethodInfo& info, const Ivp& ivp, const StepSourceFactory& make_source,
+                  Observer& observer, const SolveOptions& options, std::uint64_t maximum_steps) {
+  return Loop(info, ivp, observer, options, maximum_steps).run(make_source);
+}
+
+}  // namespace fw::integrators

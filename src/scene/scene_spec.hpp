@@ -1,0 +1,96 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings/archive.hpp"
+
+namespace fw::scene {
+
+/// [world]
+struct WorldSpec {
+  Vec3<double> gravity{};  ///< [m/s²]
+  double drag = 0.0;       ///< [kg/s]
+};
+void declare(settings::Archive& a, WorldSpec& world);
+
+/// [particles]
+struct ParticlesSpec {
+  std::vector<Vec3<double>> position;                 ///< [m]
+  std::optional<std::vector<Vec3<double>>> velocity;  ///< [m/s]
+  std::vector<double> mass;                           ///< [kg], one or one per particle
+  std::vector<int> fixed;
+};
+void declare(settings::Archive& a, ParticlesSpec& particles);
+
+/// [springs]
+struct SpringsSpec {
+  std::size_t particles = 0;  ///< that there are
+  IndexPairs between;
+  std::vector<double> stiffness;                   ///< [N/m]; [N] with the law strain
+  std::vector<double> damping = {0.0};             ///< [N·s/m]
+  std::optional<std::vector<double>> rest_length;  ///< [m]
+  std::string law = "hooke";
+};
+void declare(settings::Archive& a, SpringsSpec& springs);
+
+/// One of the sections [[springs]]: a group with a law of its own.
+struct SpringGroupSpec {
+  SpringsSpec springs;
+  std::string name;
+};
+void declare(settings::Archive& a, SpringGroupSpec& group);
+
+/// [generate]
+struct GenerateSpec {
+  std::string kind;
+  std::int64_t count = 0;            ///< of a chain
+  std::vector<std::int64_t> counts;  ///< of the others, along each axis
+  std::optional<double> length;      ///< of a chain [m]
+  std::optional<std::vector<double>> size;
+  std::optional<double> spacing;
+  Vec3<double> origin{};
+  Vec3<double> direction{1.0, 0.0, 0.0};
+  std::string plane = "xy";
+  std::optional<std::vector<double>> mass;
+  std::optional<double> total_mass, density;
+  std::vector<std::string> springs;
+  NumberTable stiffness, damping = {{"", 0.0}};
+  double rest_length_factor = 1.0;
+  std::string law = "hooke";
+  PointList pinned;
+  Vec3<double> velocity{};
+};
+void declare(settings::Archive& a, GenerateSpec& generate);
+
+/// [[anchor]]
+struct AnchorSpec {
+  PointList particle;
+  double stiffness = 0.0, damping = 0.0;
+  std::optional<Vec3<double>> position;
+};
+void declare(settings::Archive& a, AnchorSpec& anchor);
+
+/// [[obstacle]]
+struct ObstacleSpec {
+  std::string shape;
+  Vec3<double> point{}, normal{}, centre{}, lower{}, upper{};
+  double radius = 0.0, stiffness = 0.0, damping = 0.0;
+};
+void declare(settings::Archive& a, ObstacleSpec& obstacle);
+
+/// A scene file.
+struct SceneSpec {
+  std::string title;
+  WorldSpec world;
+  std::optional<GenerateSpec> generate;
+  std::optional<ParticlesSpec> particles;
+  std::optional<SpringsSpec> springs;
+  std::vector<SpringGroupSpec> spring_groups;  ///< in place of `springs`
+  std::vector<AnchorSpec> anchors;
+  std::vector<ObstacleSpec> obstacles;
+};
+void declare(settings::Archive& a, SceneSpec& scene);
+
+}  // namespace fw::scene

@@ -1,0 +1,107 @@
+#include "settings/setting.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace fw::settings {
+
+std::string expectation(const SettingInfo& info) {
+  constexpr auto none_below = std::numeric_limits<std::int64_t>::min();
+  constexpr auto none_above = std::numeric_limits<std::int64_t>::max();
+  const bool has_lowest = info.lowest != none_below, has_highest = info.highest != none_above;
+  const std::string integers = has_lowest && has_highest
+                                   ? fmt::format(" from {} to {}", info.lowest, info.highest)
+                               : has_lowest  ? fmt::format(" >= {}", info.lowest)
+                               : has_highest ? fmt::format(" <= {}", info.highest)
+                                             : "";
+  std::string names;
+  for (const std::string& name : info.choices) names += (names.empty() ? "\"" : ", \"") + name + '"';
+  switch (info.type) {
+    case Type::number:
+      return "a finite number" + info.range.text();
+    case Type::integer:
+      return "an integer" + integers;
+    case Type::boolean:
+      return "true or false";
+    case Type::string:
+      return names.empty() ? "a string" : "one of " + names;
+    case Type::vector:
+      return "an array of 3 numbers [x, y, z]";
+    case Type::numbers:
+      return "a list of finite numbers" + info.range.text();
+    case Type::integers:
+      return "a list of integers" + integers;
+    case Type::strings:
+      return names.empty() ? "a list of strings" : "a list of " + names;
+    case Type::number_table:
+      return "a table of numbers";
+    case Type::sequence:
+      return "a list of finite numbers" + info.range.text() + ", or { from, to, count }";
+    case Type::vectors:
+      return "an array of vectors [x, y, z]";
+    case Type::number_or_list:
+      return fmt::format("one number, or an array with one number per {} ({})", info.what, info.count);
+    case Type::number_or_table:
+      return "a number";
+    case Type::indices:
+      return fmt::format("an array of {} indices", info.what);
+    case Type::index_pairs:
+      return fmt::format("an array of pairs [i, j] of {} indices", info.what);
+    case Type::points:
+      return fmt::format("the index of a {} or a name, or an array of these", info.what);
+    case Type::numbers_or_strings:
+      return "a list of numbers or of strings";
+  }
+  return "";
+}
+
+Setting& Setting::above(double bound) {
+  info_.range.lowest = bound;
+  info_.range.excludes_lowest = true;
+  return *this;
+}
+
+Setting& Setting::or_one_per(std::string what, std::size_t count) {
+  info_.type = Type::number_or_list;
+  return into(std::move(what), count);
+}
+
+Setting& Setting::or_by_name(std::vector<std::string> names) {
+  info_.type = Type::number_or_table;
+  return choices(std::move(names));
+}
+
+Setting& Setting::into(std::string what, std::size_t count) {
+  info_.what = std::move(what);
+  info_.count = count;
+  return *this;
+}
+
+Setting& Setting::integers(std::int64_t lowest, std::int64_t highest) {
+  info_.lowest = lowest;
+  info_.highest = highest;
+  return *this;
+}
+
+SettingInfo Setting::quick_info() const {
+  SettingInfo info = info_;
+  info.is_required = false;
+  info.quick = {};
+  info.default_text = info_.quick.kind == QuickRule::Kind::fixed ? fmt::format("`{}`", info_.quick.bound)
+                      : info_.quick.kind == QuickRule::Kind::at_most
+                          ? fmt::format("`{}`, at most {}", info_.name, info_.quick.bound)
+                          : fmt::format("`{}`", info_.name);
+  return info;
+}
+
+TomlValue Setting::quick_default() const {
+  const std::optional<TomlValue> full = value();
+  if (!full) throw std::logic_error("a setting without a value has no default in [quick]: " + info_.name);
+  if (info_.quick.kind == QuickRule::Kind::same) return *full;
+  if (info_.quick.kind == QuickRule::Kind::fixed) return info_.quick.bound;
+  return std::min(std::get<std::int64_t>(*full), info_.quick.bound);
+}
+
+}  // namespace fw::settings

@@ -1,0 +1,68 @@
+#include "catalog/method_call.hpp"
+
+#include <gtest/gtest.h>
+
+#include "catalog/method_options.hpp"
+#include "catalog/methods.hpp"
+
+namespace fw::catalog {
+namespace {
+
+/// What parsing, or making the method, is refused with; "accepted" where it is not.
+std::string refusal_of(const std::string& text, bool make = false) {
+  try {
+    if (make) {
+      make_method(text);
+    } else {
+      parse_method_call(text);
+    }
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MethodCall, IsANameAlone) {
+  const MethodCall call = parse_method_call("rk4");
+  EXPECT_EQ(call.name, "rk4");
+  EXPECT_TRUE(call.options.empty());
+}
+
+TEST(MethodCall, HasOptionsInBrackets) {
+  const MethodCall call =
+      parse_method_call("implicit_euler_linearised[linear_solver=lu,tangent=psd_projection]");
+  EXPECT_EQ(call.name, "implicit_euler_linearised");
+  EXPECT_EQ(call.options, (MethodOptions{{"linear_solver", "lu"}, {"tangent", "psd_projection"}}));
+}
+
+TEST(MethodCall, KeepsEqualsSignsAndSpacesOfAValue) {
+  const MethodCall call = parse_method_call("petsc:ts_theta[petsc=-ksp_type cg -pc_type=icc,empty=]");
+  EXPECT_EQ(call.name, "petsc:ts_theta");
+  EXPECT_EQ(call.options, (MethodOptions{{"petsc", "-ksp_type cg -pc_type=icc"}, {"empty", ""}}));
+}
+
+TEST(MethodCall, MayHaveNothingInItsBrackets) {
+  EXPECT_EQ(parse_method_call("rk4[]").name, "rk4");
+  EXPECT_TRUE(parse_method_call("rk4[]").options.empty());
+}
+
+TEST(MethodCall, SaysWhatIsMalformed) {
+  const std::string form = "; expected name or name[option=value,option=value]";
+  EXPECT_EQ(refusal_of("rkc2[stages=5"), "method \"rkc2[stages=5\": found no closing ]" + form);
+  EXPECT_EQ(refusal_of("rkc2[stages]"),
+            "method \"rkc2[stages]\": found \"stages\" without option=value" + form);
+  EXPECT_EQ(refusal_of("rkc2[=5]"), "method \"rkc2[=5]\": found \"=5\" without option=value" + form);
+  EXPECT_EQ(refusal_of("rkc2[a=1,]"), "method \"rkc2[a=1,]\": found \"\" without option=value" + form);
+  EXPECT_EQ(refusal_of("rkc2[a=1,a=2]"), "method \"rkc2[a=1,a=2]\": found option \"a\" twice" + form);
+}
+
+TEST(MethodCall, OfAnUnknownMethodOrOptionNamesTheKnownOnes) {
+  EXPECT_NE(refusal_of("rk44", true).find("rk4"), std::string::npos) << refusal_of("rk44", true);
+  const std::string refusal = refusal_of("rkc2[stage=5]", true);
+  EXPECT_NE(refusal.find("\"stage\""), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("stages"), std::string::npos) << refusal;
+  EXPECT_EQ(refusal_of("rkc2[stages=5]", true), "accepted");
+}
+
+}  // namespace
+}  // namespace fw::catalog

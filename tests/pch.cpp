@@ -1,0 +1,1 @@
+// The file that the precompiled header (pch.hpp) is compiled with.
