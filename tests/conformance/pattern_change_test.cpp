@@ -46,8 +46,12 @@ void expect_the_same_as_with_dense_matrices(bool is_second_order) {
     EXPECT_LE(difference, (has_fixed_step ? 1e-10 : 1e-6) * scale);
     // Patterns are made anew then and only then.
     EXPECT_EQ(changing.patterns_without_change, 0);
-    if (changing.patterns_at_start > 0) EXPECT_GT(changing.patterns_for_change, 0);
-    if (!is_foreign(entry->name)) EXPECT_EQ(dense.patterns_for_change, 0);
+    if (changing.patterns_at_start > 0) {
+      EXPECT_GT(changing.patterns_for_change, 0);
+    }
+    if (!is_foreign(entry->name)) {
+      EXPECT_EQ(dense.patterns_for_change, 0);
+    }
   }
 }
 

@@ -16,6 +16,8 @@ class FunctionStepper final : public integrators::Stepper {
   using Step = std::function<Status(double t, double h, VectorRef y)>;
   explicit FunctionStepper(Step step) : step_(std::move(step)) {}
   Status step(double t, double h, VectorRef y) override { return step_(t, h, y); }
+  void restart(double, ConstVectorRef) override {}
+  void serialise(StateArchive&) override {}
 
  private:
   Step step_;
@@ -159,6 +161,11 @@ class HandWrittenMultistep final : public integrators::Stepper {
     }
     return y.allFinite() ? Status{} : Status{StatusCode::newton_failed, "the fixed-point iteration diverges"};
   }
+  void restart(double, ConstVectorRef) override {
+    states_.clear();
+    slopes_.clear();
+  }
+  void serialise(StateArchive&) override {}
 
  private:
   Vector slope(double t, ConstVectorRef y) const {

@@ -20,6 +20,8 @@ class SeededStepper final : public integrators::Stepper {
     step_(system_, t, h, y.head(n), y.tail(n), memory_);
     return {};
   }
+  void restart(double, ConstVectorRef) override { memory_.resize(0); }
+  void serialise(StateArchive&) override {}
 
  private:
   const SecondOrderSystem& system_;
