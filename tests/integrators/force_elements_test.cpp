@@ -144,5 +144,44 @@ TEST(ElementsThatChange, BetweenTwoRunsGiveWhatTwoSystemsGive) {
   }
 }
 
+/// Changes the elements of a membrane at the first accepted step from t = 0.2 on.
+class ComeAndGo final : public StepHook {
+ public:
+  explicit ComeAndGo(Membrane& membrane) : membrane_(membrane) {}
+  Change on_accepted(double t, VectorRef) override {
+    if (is_done_ || t < 0.2 - 1e-9) return Change::none;
+    is_done_ = true;
+    membrane_.change();
+    return Change::pattern;
+  }
+
+ private:
+  Membrane& membrane_;
+  bool is_done_ = false;
+};
+
+TEST(ElementsThatChange, AtAnAcceptedStepGiveWhatTwoRunsGive) {
+  for (const auto& scheme : {make_implicit_euler(), make_discrete_gradient(), make_r_respa({})}) {
+    Membrane in_one;
+    ComeAndGo hook(in_one);
+    NullObserver observer;
+    const Solution whole = scheme->solve(in_one.ivp, FixedStep{.step = 0.01}, observer, {.hook = &hook});
+    ASSERT_TRUE(whole.status.ok()) << scheme->info().name << ": " << whole.status.describe();
+    EXPECT_EQ(in_one.system->pattern_revision(), 1u);
+
+    Membrane in_two;
+    Ivp part = in_two.ivp;
+    part.t1 = 0.2;
+    const Vector middle = run(*scheme, part, 0.01).state;
+    in_two.change();
+    part = in_two.ivp;
+    part.t0 = 0.2;
+    part.y0 = middle;
+    part.y0_extended.clear();
+    EXPECT_LE((run(*scheme, part, 0.01).state - whole.state).norm(), 1e-11) << scheme->info().name;
+    EXPECT_GT((run(*scheme, Membrane().ivp, 0.01).state - whole.state).norm(), 1e-3) << scheme->info().name;
+  }
+}
+
 }  // namespace
 }  // namespace fw::integrators

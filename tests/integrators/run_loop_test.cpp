@@ -55,8 +55,9 @@ TEST(RunLoop, ShowsTheChangedStateAndGoesOnFromIt) {
     std::vector<double> values, inside;
     for (const Vector& y : record.states) values.push_back(y[0]);
     for (const Vector& y : record.insides) inside.push_back(y[0]);
-    EXPECT_THAT(values, ElementsAre(0.0, 0.5, 1.5, 3.5, 7.5)) << name;
-    EXPECT_EQ(solution.state[0], 7.5);
+    const auto near = [](double value) { return testing::DoubleNear(value, 4e-15); };  // weights are rounded
+    EXPECT_THAT(values, ElementsAre(0.0, near(0.5), near(1.5), near(3.5), near(7.5))) << name;
+    EXPECT_EQ(solution.state[0], values.back());
     // Inside a step the solution is that of the method.
     const double two_thirds = 0.25 * 2.0 / 3.0;
     ASSERT_EQ(inside.size(), 4u);
