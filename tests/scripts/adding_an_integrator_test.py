@@ -202,7 +202,7 @@ def examine(build_directory):
         raise Failure(f"three cases hold and explicit Euler gains 39 J, says the page, but:\n{answer.stdout}")
 
     # The seeded mistake that the page names.
-    path = "src/integrators/modified_midpoint.cpp"
+    path = "src/integrators/special/modified_midpoint.cpp"
     wrong = changed((tree / path).read_text(), "-(2.0 * substep)\n+substep\n", "seeded mistake")
     (tree / path).write_text(wrong)
     build.compile(path)
