@@ -36,14 +36,16 @@ TEST(MethodCall, HasOptionsInBrackets) {
 }
 
 TEST(MethodCall, KeepsEqualsSignsAndSpacesOfAValue) {
-  const MethodCall call = parse_method_call("petsc:ts_theta[petsc=-ksp_type cg -pc_type=icc,empty=]");
+  const MethodCall call = parse_method_call("petsc:ts_theta[petsc=-ksp_type cg -pc_type=icc]");
   EXPECT_EQ(call.name, "petsc:ts_theta");
-  EXPECT_EQ(call.options, (MethodOptions{{"petsc", "-ksp_type cg -pc_type=icc"}, {"empty", ""}}));
+  EXPECT_EQ(call.options, (MethodOptions{{"petsc", "-ksp_type cg -pc_type=icc"}}));
 }
 
-TEST(MethodCall, MayHaveNothingInItsBrackets) {
-  EXPECT_EQ(parse_method_call("rk4[]").name, "rk4");
-  EXPECT_TRUE(parse_method_call("rk4[]").options.empty());
+TEST(MethodCall, HasNoEmptyBracketsAndNoEmptyValues) {
+  const std::string form = "; expected name or name[option=value,option=value]";
+  EXPECT_EQ(refusal_of("rk4[]"), "method \"rk4[]\": found [] without an option" + form);
+  EXPECT_EQ(refusal_of("rkc2[stages=]"),
+            "method \"rkc2[stages=]\": found option \"stages\" without a value" + form);
 }
 
 TEST(MethodCall, SaysWhatIsMalformed) {
