@@ -35,6 +35,7 @@ BASES = {
     "stiffness": {"methods": ["rk4"], "stiffness": {"operation_costs": {}}, "problem": [FAMILY, SEQUENCE]},
     "work_precision": {"methods": ["rk4"], "work_precision": {}, "problem": [FAMILY, SEQUENCE]},
     "energy": {"methods": ["rk4"], "energy": {"steps": [0.1]}, "problem": [OSCILLATOR, SCENE]},
+    "verify": {"methods": ["rk4"], "verify": {}},
     "dissipation": {"methods": ["rk4"], "dissipation": {}},
     "propagation": {"methods": ["rk4"], "propagation": {"steps": [0.1]}, "problem": [{"name": "linear_chain"}]},
     "jacobian": {"springs": {}, "derivatives": {}, "definiteness": {"compressions": [1.0], "steps": [0.1]},

@@ -27,6 +27,7 @@ void expect_the_same_as_with_dense_matrices(bool is_second_order) {
   const auto list = methods_with_matrices(sample);
   EXPECT_GE(list.size(), 20u);
   for (const MethodEntry* entry : list) {
+    if (entry->name == "gsl:bsimp") continue;  // one extrapolated step goes over the whole interval
     SCOPED_TRACE(entry->name);
     const std::unique_ptr<Integrator> method = entry->make({});
     const bool has_fixed_step = method->info().has_fixed_step;

@@ -178,9 +178,9 @@ TEST(JacobianStudy, SeesABlockThatThePatternLacks) {
    private:
     catalog::BuiltinCatalog builtin_;
   };
-  const auto right = run("[derivatives]\nformulas = []\n" + cloth);
+  const auto right = run("[derivatives]\nformulas = [\"forward\"]\n" + cloth);
   EXPECT_EQ(right.at("small_cloth-pattern").verdict, Verdict::holds);
-  const auto wrong = run("[derivatives]\nformulas = []\n" + cloth, Sparser());
+  const auto wrong = run("[derivatives]\nformulas = [\"forward\"]\n" + cloth, Sparser());
   EXPECT_EQ(wrong.at("small_cloth-pattern").verdict, Verdict::fails);
 }
 
@@ -236,7 +236,7 @@ TEST(JacobianStudy, RefusesWhatItCannotDo) {
     return "accepted";
   };
   EXPECT_THAT(message(cloth), HasSubstr("found none of [derivatives]"));
-  EXPECT_THAT(message("[springs]\nlaws = [\"rubber\"]\n"), HasSubstr("found \"rubber\""));
+  EXPECT_THAT(message("[springs]\nlaws = [\"rubber\"]\n"), HasSubstr("found the string \"rubber\""));
   EXPECT_THAT(message("[definiteness]\n" + grid + "[[problem]]\nname = \"van_der_pol\"\n"),
               HasSubstr("has no springs"));
   EXPECT_THAT(message("[definiteness]\ncompressions = []\nsteps = [0.1]\n" + cloth), HasSubstr("empty list"));

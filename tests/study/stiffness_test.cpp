@@ -110,7 +110,7 @@ TEST(Stiffness, FindsWhereImplicitStepsBeginToPay) {
   const StudyResult study = run(
       spec("\"rk4\", \"implicit_euler\"", "cost", "-1.0, -1e1, -1e2, -1e3, -1e4, -1e5"), SeededCatalog({}));
   const CaseResult& overview = find(study, "overview");
-  EXPECT_THAT(text_of(overview, "reason"), HasSubstr("by operations"));
+  EXPECT_THAT(overview.reason, HasSubstr("by operations"));
   const std::vector<double> plain = numbers_of(overview, "cheapest_explicit_cost"),
                             implicit = numbers_of(overview, "cheapest_implicit_cost");
   ASSERT_EQ(plain.size(), 6u);

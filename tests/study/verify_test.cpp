@@ -90,9 +90,10 @@ TEST(VerifyStudy, IsThinnedOutByQuick) {
 }
 
 TEST(VerifyStudy, RefusesUnknownParts) {
-  EXPECT_THAT(refusal_of(spec("\"rk4\"", "\"orders\""), SeededCatalog({})),
-              HasSubstr("found \"orders\", expected one of order, error_estimate"));
-  EXPECT_THAT(refusal_of(spec("\"rk4\"", ""), SeededCatalog({})), HasSubstr("expected at least one part"));
+  EXPECT_THAT(
+      refusal_of(spec("\"rk4\"", "\"orders\""), SeededCatalog({})),
+      HasSubstr("parts[0]: found the string \"orders\", expected one of \"order\", \"error_estimate\""));
+  EXPECT_THAT(refusal_of(spec("\"rk4\"", ""), SeededCatalog({})), HasSubstr("expected at least one entry"));
 }
 
 }  // namespace

@@ -219,7 +219,8 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   Ivp ivp = given;
   ivp.t1 = ivp.t0 + step * static_cast<double>(steps);
   run.seen = std::make_unique<EnergyObserver>(
-      watched, analysis::modified_energy(theory.modified_energy, ivp, step, watched.value), step, steps, bins);
+      watched, analysis::modified_energy(theory.modified_energy, ivp, step, watched.value), step, steps,
+      bins);
   const Solution solution = context.solve(integrator, ivp, FixedStep{.step = step}, *run.seen);
   run.status = solution.status;
   run.end_time = solution.time;
