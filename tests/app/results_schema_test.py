@@ -287,7 +287,7 @@ vary = { parameter = "lambda", values = [-1.0, -2.0, -4.0] }
 exponent = -1.0
 """,
 }
-SIMULATED_SCENES = ["double_spring", "box_and_anchor", "refined_chain_strain", "grid_on_sphere"]
+SIMULATED_SCENES = ["double_spring", "box_and_anchor", "refined_chain_strain", "grid_on_sphere", "net_on_ropes"]
 
 
 class ResultsSchema(unittest.TestCase):
@@ -351,7 +351,7 @@ class ResultsSchema(unittest.TestCase):
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
-        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring"),
+        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring net_on_ropes"),
                            ("stability", "stability"), ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation"),
                            ("verify", "verify")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")
