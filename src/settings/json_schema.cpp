@@ -119,7 +119,8 @@ class SchemaWriter {
 
   void section(const SectionDescription& inner) {
     if (!inner.is_list) return object(inner);
-    json_.key("type").value("array").key("minItems").value(std::int64_t{1});
+    json_.key("type").value("array");
+    if (inner.info.is_required) json_.key("minItems").value(std::int64_t{1});
     json_.key("items").begin_object();
     object(inner);
     json_.end_object();
