@@ -43,7 +43,7 @@ foreach(suite IN LISTS suites)
       set(environment " ENVIRONMENT [=[GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${index}]=]")
     endif()
     string(APPEND text "add_test([=[${name}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
-      "set_tests_properties([=[${name}]=] PROPERTIES LABELS ${LABEL} COST ${COST} TIMEOUT 600"
+      "set_tests_properties([=[${name}]=] PROPERTIES LABELS ${LABEL} COST ${COST} TIMEOUT 1200"
       " FAIL_REGULAR_EXPRESSION [=[Running 0 tests]=]${environment})\n")
   endforeach()
 endforeach()
