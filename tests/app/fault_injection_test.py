@@ -123,7 +123,7 @@ class FaultInjection(unittest.TestCase):
             done = set()
             while True:
                 run = Run(self.folder, "--jobs", str(draw.choice((1, 2, 3))))
-                time.sleep(draw.uniform(0.0, 0.25))
+                time.sleep(draw.uniform(0.0, 0.5))
                 victim = draw.choice(("run", "run", "worker", "interrupt", "terminate"))
                 workers = run.workers()
                 killed = run.process.poll() is None
