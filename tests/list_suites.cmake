@@ -1,5 +1,6 @@
 # Writes FILE, which registers every suite of the test PROGRAM with ctest under LABEL, with COST to say when it should
 # start. Runs after the program is linked: cmake -DPROGRAM=… -DFILE=… -DLABEL=… -DCOST=… -P list_suites.cmake
+# With -DENVIRONMENT=NAME=VALUE it runs with that variable, with -DFAILURE=|REGEX it fails where its output matches.
 #
 # A process per suite, not per test: most tests take milliseconds, while the libraries behind them take longer to load,
 # and the tests of a suite share reference solutions. A large suite is dealt out to up to four processes.
@@ -36,15 +37,15 @@ foreach(suite IN LISTS suites)
   endif()
   foreach(part RANGE 1 ${parts})
     set(name "${LABEL}.${suite}")
-    set(environment "")
+    set(environment "${ENVIRONMENT}")
     if(parts GREATER 1)
       math(EXPR index "${part} - 1")
       string(APPEND name " (${part} of ${parts})")
-      set(environment " ENVIRONMENT [=[GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${index}]=]")
+      list(APPEND environment GTEST_TOTAL_SHARDS=${parts} GTEST_SHARD_INDEX=${index})
     endif()
     string(APPEND text "add_test([=[${name}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
       "set_tests_properties([=[${name}]=] PROPERTIES LABELS ${LABEL} COST ${COST} TIMEOUT 1200"
-      " FAIL_REGULAR_EXPRESSION [=[Running 0 tests]=]${environment})\n")
+      " FAIL_REGULAR_EXPRESSION [=[Running 0 tests${FAILURE}]=] ENVIRONMENT [=[${environment}]=])\n")
   endforeach()
 endforeach()
 file(WRITE ${FILE} "${text}")

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <memory>
@@ -214,18 +215,27 @@ std::string describe(const std::string& name, bool as_json) {
       did_you_mean(name, names)));
 }
 
+/// The entries of several names, a blank line between them; as JSON an array.
+std::string describe_all(const std::vector<std::string>& names, bool as_json) {
+  if (names.size() == 1) return describe(names.front(), as_json);
+  std::vector<std::string> entries;
+  for (const std::string& name : names) entries.push_back(describe(name, as_json));
+  return as_json ? fmt::format("[\n{}]\n", fmt::join(entries, ",\n"))
+                 : fmt::format("{}", fmt::join(entries, "\n"));
+}
+
 }  // namespace
 
 void add_describe_command(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("describe", "Prints all that is known of one method, problem, scene or study kind");
-  auto name = std::make_shared<std::string>();
+      app.add_subcommand("describe", "Prints all that is known of a method, problem, scene or study kind");
+  auto names = std::make_shared<std::vector<std::string>>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("name", *name, "Its name")->required()->type_name("NAME");
-  command->add_flag("--json", *json, "As JSON");
-  command->callback([name, json, &action] {
-    action = [name, json] {
-      fmt::print("{}", describe(*name, *json));
+  command->add_option("name", *names, "Its name, or several")->required()->type_name("NAME");
+  command->add_flag("--json", *json, "As JSON; of several names an array");
+  command->callback([names, json, &action] {
+    action = [names, json] {
+      fmt::print("{}", describe_all(*names, *json));
       return exit_success;
     };
   });

@@ -76,14 +76,37 @@ TEST(Describe, KnowsEveryListedName) {
   for (const std::string what : {"methods", "problems", "scenes", "studies"}) {
     names += with_json({"list", what, "--json"}, "print('\\n'.join(m['name'] for m in x))\n");
   }
+  std::vector<std::string> call = {"describe"};
   std::istringstream lines(names);
-  for (std::string name; std::getline(lines, name);) {
-    const ProcessResult text = run(scratch.path(), {"describe", name});
-    EXPECT_EQ(text.exit_code, 0) << name << text.err;
-    EXPECT_THAT(text.out, ::testing::StartsWith(name));
-    with_json({"describe", name, "--json"},
-              "assert x['name'] == '" + name + "' and x['title'] and x['type'], x\n");
+  for (std::string name; std::getline(lines, name);) call.push_back(name);
+  const ProcessResult text = run(scratch.path(), call);
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  for (std::size_t k = 1; k < call.size(); ++k) {
+    EXPECT_TRUE(text.out.starts_with(call[k] + "\n") ||
+                text.out.find("\n\n" + call[k] + "\n") != std::string::npos)
+        << call[k];
   }
+  store::test::write_bytes(scratch / "names", names);
+  call.push_back("--json");
+  with_json(call, "names = open('" + (scratch / "names").string() + R"(').read().split()
+assert [e['name'] for e in x] == names, (x, names)
+for e in x:
+    assert e['title'] and e['type'], e
+)");
+}
+
+TEST(Describe, OfOneNameIsOneEntryAndOfSeveralTheirList) {
+  const ScratchDirectory scratch;
+  const std::string first = run(scratch.path(), {"describe", "rk4"}).out;
+  const std::string second = run(scratch.path(), {"describe", "dahlquist"}).out;
+  EXPECT_EQ(run(scratch.path(), {"describe", "rk4", "dahlquist"}).out, first + "\n" + second);
+  with_json({"describe", "rk4", "--json"}, "assert x['name'] == 'rk4', x\n");
+  with_json({"describe", "rk4", "dahlquist", "--json"},
+            "assert [e['name'] for e in x] == ['rk4', 'dahlquist'], x\n");
+  const ProcessResult unknown = run(scratch.path(), {"describe", "rk4", "rk44"});
+  EXPECT_NE(unknown.exit_code, 0);
+  EXPECT_EQ(unknown.out, "");
+  EXPECT_THAT(unknown.err, HasSubstr("\"rk44\""));
 }
 
 TEST(Describe, PrintsTheTableauOfARungeKuttaMethod) {

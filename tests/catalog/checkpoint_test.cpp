@@ -114,22 +114,22 @@ TEST(Checkpoint, ThatLeavesOutAMemberIsCaught) {
       {"gautschi", {"coordinates", "velocities", "rest of the force"}},
       {"implicit_euler_linearised", {"increment"}},
       {"rkc2", {"state", "steps"}}};
-  std::set<std::string> seen;
-  for (const MethodRun& run : method_runs(steps, true, true)) {
-    const auto expected = members.find(run.call);
-    if (expected == members.end()) continue;
+  // What is computed anew on one problem may be carried over on another: the stiff force of r_respa where it
+  // depends on positions only.
+  std::map<std::string, std::set<std::string>> caught, caught_with_tolerances;
+  for (const MethodRun& run : method_runs(steps, true, false)) {
+    if (!members.contains(run.call)) continue;
     const std::vector<std::string> found = members_that_matter(run);
-    seen.insert(run.call);
-    for (const std::string& member : expected->second) {
-      if (run.is_fixed()) {
-        EXPECT_THAT(found, Contains(member)) << run.name();
-      }
-    }
-    if (!run.is_fixed()) {
-      EXPECT_THAT(found, Contains("step to come")) << run.name();
-    }
+    (run.is_fixed() ? caught : caught_with_tolerances)[run.call].insert(found.begin(), found.end());
   }
-  EXPECT_EQ(seen.size(), members.size());
+  EXPECT_GE(caught_with_tolerances.size(), 4u);
+  for (const auto& [call, found] : caught_with_tolerances) {
+    EXPECT_THAT(found, Contains("step to come")) << call;
+  }
+  EXPECT_EQ(caught.size(), members.size());
+  for (const auto& [call, expected] : members) {
+    for (const std::string& member : expected) EXPECT_THAT(caught[call], Contains(member)) << call;
+  }
 }
 
 MethodRun first_run(const std::string& call, bool fixed = true) {
