@@ -9,6 +9,7 @@ void write_header(hid_t file, const FileHeader& header) {
   const Provenance origin = provenance();
   write_attribute(file, "format", format_name);
   write_attribute(file, "format_version", format_version);
+  write_attribute(file, "seal", "sha256");
   write_attribute(file, "kind", header.kind);
   write_attribute(file, "title", header.title);
   write_attribute(file, "created", timestamp_utc());

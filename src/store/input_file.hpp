@@ -12,7 +12,9 @@ namespace fw::store {
 class InputFile {
  public:
   /// Throws InputError that names the path: not there, no permission, no HDF5 file, truncated, changed since
-  /// it was sealed, not of this program, or of a later version of it.
+  /// it was sealed, without the seal that it should have, not of this program, or of a later version of it.
+  /// The library sees nothing of a file before its seal is checked, or before a process of its own has read
+  /// it whole where it has none (trajectories of earlier versions).
   explicit InputFile(const std::filesystem::path& path);
 
   hid_t id() const { return file_; }

@@ -22,7 +22,7 @@ void write_study(const std::filesystem::path& path, const std::string& command_l
     write_cases(file.id(), result.cases);
     write_status(file.id(), result.complete);
   });
-  file.publish(OutputFile::Seal::sha256);
+  file.publish();
 }
 
 StudyFile read_study(const std::filesystem::path& path) {

@@ -176,7 +176,7 @@ void TrajectoryWriter::finish(const Status& status, const Work& work) {
     write_attribute(d->file.id(), "solver_status", status.describe());
     write_status(d->file.id(), status.ok());
   });
-  d->file.publish(OutputFile::Seal::none);
+  d->file.publish();
 }
 
 }  // namespace fw::store

@@ -173,9 +173,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadInput{"Missing", {"show", "a.h5"}, {}, {"a.h5", "No such file"}},
         BadInput{"Directory", {"show", "d"}, {{"d/", ""}}, {"\"d\"", "no regular file"}},
-        BadInput{"Empty", {"show", "a.h5"}, {{"a.h5", ""}}, {"a.h5", "no HDF5 file"}},
-        BadInput{"Text", {"show", "a.h5"}, {{"a.h5", "hello\n"}}, {"a.h5", "no HDF5 file"}},
-        BadInput{"TextAsJson", {"show", "a.h5", "--json"}, {{"a.h5", "x"}}, {"a.h5", "no HDF5 file"}}),
+        BadInput{"Empty", {"show", "a.h5"}, {{"a.h5", ""}}, {"a.h5", "not an HDF5 file"}},
+        BadInput{"Text", {"show", "a.h5"}, {{"a.h5", "hello\n"}}, {"a.h5", "not an HDF5 file"}},
+        BadInput{"TextAsJson", {"show", "a.h5", "--json"}, {{"a.h5", "x"}}, {"a.h5", "not an HDF5 file"}}),
     name_of);
 
 TEST(BadCommand, ShowRefusesATruncatedResult) {

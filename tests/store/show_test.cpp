@@ -168,8 +168,10 @@ TEST(Show, SaysWhyAFileCannotBeShown) {
   write_bytes(scratch / "truncated.h5", read_bytes(scratch / "a.h5").substr(0, 5000));
   write_bytes(scratch / "text.h5", "nothing");
   std::filesystem::create_directory(scratch / "directory");
-  run_python("import h5py, sys\nf = h5py.File(sys.argv[1], 'r+')\ndel f['trajectory/kinetic_energy']\n",
-             {(scratch / "a.h5").string()});
+  run_python(
+      "import h5py, sys\nf = h5py.File(sys.argv[1], 'r+')\ndel f['trajectory/kinetic_energy']\ndel "
+      "f.attrs['seal']\n",
+      {(scratch / "a.h5").string()});
   const auto refuses = [&](const std::string& name, const char* reason) {
     EXPECT_THAT([&] { show(scratch / name); },
                 ThrowsMessage<InputError>(
@@ -178,7 +180,7 @@ TEST(Show, SaysWhyAFileCannotBeShown) {
   };
   refuses("a.h5", "kinetic_energy");
   refuses("truncated.h5", "truncated");
-  refuses("text.h5", "no HDF5 file");
+  refuses("text.h5", "not an HDF5 file");
   refuses("directory", "no regular file");
   refuses("missing.h5", "No such file");
 }

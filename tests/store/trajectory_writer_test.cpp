@@ -42,7 +42,8 @@ TEST(TrajectoryWriter, WritesEveryRootAttributeOfTheContract) {
   EXPECT_EQ(text_of(attributes, "status"), "complete");
   EXPECT_EQ(text_of(attributes, "solver_status"), "success");
   EXPECT_EQ(integer_of(attributes, "quick", -1), 0);
-  EXPECT_EQ(attributes.size(), 18U);
+  EXPECT_EQ(text_of(attributes, "seal"), "sha256");
+  EXPECT_EQ(attributes.size(), 19U);
 }
 
 TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {

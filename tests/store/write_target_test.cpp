@@ -63,8 +63,8 @@ TEST(WriteTarget, RefusesToOverwriteWhatIsNoWholeResult) {
   run_python(
       "import h5py, sys\nf = h5py.File(sys.argv[1], 'w')\nf['x'] = [1, 2, 3]\nf.attrs['format'] = 'other'\n",
       {(scratch / "foreign.h5").string()});
-  expect_refused(scratch / "notes.txt", "no HDF5 file");
-  expect_refused(scratch / "empty.h5", "no HDF5 file");
+  expect_refused(scratch / "notes.txt", "not an HDF5 file");
+  expect_refused(scratch / "empty.h5", "not an HDF5 file");
   expect_refused(scratch / "truncated.h5", "truncated");
   expect_refused(scratch / "foreign.h5", "no federwerk result");
   EXPECT_EQ(read_bytes(scratch / "notes.txt"), "my thesis\n");

@@ -36,11 +36,11 @@ void OutputFile::fail(const std::string& reason) {
   throw SystemError(fmt::format("cannot write \"{}\": {}", temporary_.target().string(), reason));
 }
 
-void OutputFile::publish(Seal seal) {
+void OutputFile::publish() {
   guarded([&] {
     if (!file_.reset()) throw LibraryError("closing: " + take_error_stack());
   });
-  if (seal == Seal::sha256) append_seal(*temporary_.file());
+  append_seal(*temporary_.file());
   temporary_.publish();
 }
 

@@ -28,12 +28,10 @@ class OutputFile {
     check();
   }
 
-  /// Whether to append the SHA-256 of the file behind its HDF5 content (which HDF5 readers do not see), so
-  /// that damage is noticed before the library parses it. Costs a second pass over the file.
-  enum class Seal { none, sha256 };
-
-  /// Closes the file and gives it its final name. Throws SystemError.
-  void publish(Seal seal);
+  /// Closes the file, appends the SHA-256 of its content behind it (which HDF5 readers do not see), so that
+  /// damage is noticed before the library parses it, and gives it its final name. Costs a second pass over
+  /// the file. Throws SystemError.
+  void publish();
   /// Removes the file.
   void discard() noexcept;
 

@@ -1,5 +1,6 @@
 #include "store/file/seal.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -12,16 +13,23 @@ namespace {
 constexpr std::string_view seal_prefix = "federwerk sha256 ";
 static_assert(seal_size == seal_prefix.size() + 64 + 1);
 
-std::string content(const DriverFile& file) {
-  std::string text(file.size(), '\0');
-  if (!file.read(0, text.data(), text.size())) throw SystemError("the file cannot be read");
-  return text;
+/// The seal of the first `size` bytes of the file.
+std::string seal_of(const DriverFile& file, std::uint64_t size) {
+  std::string block(std::size_t{1} << 20, '\0');
+  Sha256 digest;
+  for (std::uint64_t at = 0; at < size;) {
+    const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), size - at));
+    if (!file.read(at, block.data(), bytes)) throw SystemError("the file cannot be read");
+    digest.update(std::string_view(block).substr(0, bytes));
+    at += bytes;
+  }
+  return std::string(seal_prefix) + digest.hex() + "\n";
 }
 
 }  // namespace
 
 void append_seal(DriverFile& file) {
-  const std::string seal = std::string(seal_prefix) + sha256_hex(content(file)) + "\n";
+  const std::string seal = seal_of(file, file.size());
   file.write(file.size(), seal.data(), seal.size());
 }
 
@@ -31,9 +39,7 @@ SealState check_seal(const DriverFile& file) {
   std::string seal(seal_size, '\0');
   if (!file.read(size, seal.data(), seal.size())) throw SystemError("the file cannot be read");
   if (!seal.starts_with(seal_prefix)) return SealState::absent;
-  const std::string text = content(file);
-  const std::string digest = sha256_hex(std::string_view(text).substr(0, size));
-  return seal == std::string(seal_prefix) + digest + "\n" ? SealState::intact : SealState::broken;
+  return seal == seal_of(file, size) ? SealState::intact : SealState::broken;
 }
 
 }  // namespace fw::store

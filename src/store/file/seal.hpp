@@ -6,7 +6,7 @@ namespace fw::store {
 
 /// What the end of a file says about its content.
 enum class SealState {
-  absent,  ///< no seal: a trajectory, or a file that another program has changed since
+  absent,  ///< no seal: a file that was cut, that another program has changed since, or not ours
   intact,  ///< the SHA-256 of the content is the one in the seal
   broken,  ///< the content has changed
 };
