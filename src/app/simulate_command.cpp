@@ -21,6 +21,7 @@
 #include "store/trajectory_writer.hpp"
 #include "store/write_target.hpp"
 #include "store/xdmf.hpp"
+#include "study/measure/energy_gauge.hpp"
 #include "system/provenance.hpp"
 
 namespace fw::app {
@@ -302,14 +303,16 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     options.checkpoints = &*checkpoints;
   }
   record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
-  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
+  study::EnergyWatch watch(study::EnergyGauge(*system), sink);
+  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, watch);
   if (from) {
-    repeat_frames(*from, frames, sink);
+    repeat_frames(*from, frames, watch);
     options.resume = from->run;
   }
   SimulationObserver observer(frames, arguments.end_time);
-  const Solution solution = integrator->solve(ivp, control, observer, options);
+  Solution solution = integrator->solve(ivp, control, observer, options);
   observer.finish();
+  solution.status = watch.judged(solution.status);
   writer.finish(solution.status, solution.work);
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());

@@ -9,9 +9,8 @@
 
 namespace fw::study {
 
-WatchedProblem::WatchedProblem(const StudyProblem& entry) {
+WatchedProblem::WatchedProblem(const StudyProblem& entry) : gauge(entry.problem), springs(gauge.springs()) {
   const Problem& problem = entry.problem;
-  springs = dynamic_cast<const mechanics::MassSpringSystem*>(problem.ivp.system.get());
   if (springs != nullptr) {
     const Index n = springs->degrees_of_freedom();
     quantity = "energy";
@@ -52,21 +51,43 @@ EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFu
   }
 }
 
+bool EnergyObserver::ends_bin(const StepView& view) const {
+  const auto bin = [&](std::uint64_t index) {
+    return static_cast<std::uint64_t>(static_cast<__uint128_t>(index) * bins_ / (steps_ + 1));
+  };
+  return view.last || bin(view.index) != bin(view.index + 1);
+}
+
+void EnergyObserver::watch_size(const StepView& view, double value) {
+  if (!watched_.gauge.is_known()) {
+    budget_.add(0.0, value, 0.0);
+    return;
+  }
+  watched_.gauge.add(view.time, view.state, budget_);
+  if (view.index != 0 && !ends_bin(view)) return;
+  const SecondOrderSystem& system = *watched_.gauge.system();
+  const Index n = system.degrees_of_freedom();
+  const auto q = view.state.head(n), v = view.state.tail(n);
+  force_.resize(n);
+  system.force(view.time, q, v, force_);
+  budget_.add_position_rounding(force_.cwiseProduct(q).norm());
+}
+
 bool EnergyObserver::observe(const StepView& view) {
   const double energy = watched_.value(view.time, view.state);
   if (!std::isfinite(energy)) return false;
+  watch_size(view, energy);
   if (view.index == 0) {
-    start_ = energy;
+    first_ = energy;
     if (modified_) modified_start_ = modified_(view.time, view.state);
   }
   steps_taken_ = view.index;
-  const double change = energy - start_;
-  scale_ = std::max(scale_, std::abs(energy));
+  const double change = energy - first_;
   change_.add(view.time, change);
   // What has decayed so far says nothing more: squares of it leave the range of doubles.
   constexpr double decayed = 1e-100;
-  if (logarithm_ && energy > decayed * start_)
-    logarithm_->add(static_cast<double>(view.index), std::log(energy / start_));
+  if (logarithm_ && energy > decayed * first_)
+    logarithm_->add(static_cast<double>(view.index), std::log(energy / first_));
   if (modified_) modified_change_->add(view.time, modified_(view.time, view.state) - modified_start_);
   if (watched_.springs != nullptr) {
     const Index n = watched_.springs->degrees_of_freedom();
@@ -98,10 +119,7 @@ void EnergyObserver::watch_momenta(const StepView& view, ConstVectorRef q, Const
 void EnergyObserver::watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change) {
   power_.add(watched_.springs->dissipated_power(q, v));
   // The last value of each bin: where the next one belongs to another bin.
-  const auto bin = [&](std::uint64_t index) {
-    return static_cast<std::uint64_t>(static_cast<__uint128_t>(index) * bins_ / (steps_ + 1));
-  };
-  if (view.last || bin(view.index) != bin(view.index + 1)) {
+  if (ends_bin(view)) {
     work_.push_back(power_.integral(step_));
     balance_.push_back(change + work_.back());
   }

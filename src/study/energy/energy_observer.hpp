@@ -6,6 +6,8 @@
 #include "analysis/fit/gregory_quadrature.hpp"
 #include "analysis/theory/modified_energy.hpp"
 #include "mechanics/mass_spring_system.hpp"
+#include "ode/energy_budget.hpp"
+#include "study/measure/energy_gauge.hpp"
 #include "study/plan.hpp"
 #include "study/problem_spec.hpp"
 
@@ -17,6 +19,7 @@ struct WatchedProblem {
   std::string quantity;  ///< "energy", or the invariant's name
   std::string unit;
   std::function<double(double t, ConstVectorRef y)> value;
+  EnergyGauge gauge;  ///< the parts of `value`, where it is an energy
   const mechanics::MassSpringSystem* springs = nullptr;  ///< null: no mass-spring system
   bool is_damped = false;           ///< energy leaves through dampers, and the power is known
   bool is_free = false;             ///< no outer force: linear and angular momentum are conserved
@@ -35,8 +38,11 @@ class EnergyObserver final : public Observer {
 
   bool observe(const StepView& view) override;
 
-  double start() const { return start_; }  ///< the energy at the start
-  double scale() const { return scale_; }  ///< the largest energy in modulus
+  double start() const { return first_; }  ///< the energy at the start
+  /// Sizes of the energies that do not depend on the zero of a potential; of an invariant that is no energy of
+  /// its largest modulus.
+  const EnergyBudget& budget() const { return budget_; }
+  double scale() const { return budget_.scale(); }
   std::uint64_t steps_taken() const { return steps_taken_; }
   const analysis::BinnedSeries& change() const { return change_; }  ///< E_n − E_0
   /// ln(E_n/E_0) over n; empty where the energy is not positive.
@@ -53,12 +59,16 @@ class EnergyObserver final : public Observer {
  private:
   void watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v);
   void watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change);
+  void watch_size(const StepView& view, double value);
+  bool ends_bin(const StepView& view) const;
 
   const WatchedProblem& watched_;
   analysis::EnergyFunction modified_;
   double step_;
   std::uint64_t steps_, bins_;
-  double start_ = 0.0, scale_ = 0.0, modified_start_ = 0.0;
+  EnergyBudget budget_;
+  Vector force_;
+  double first_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
   analysis::BinnedSeries change_;
   std::optional<analysis::BinnedSeries> logarithm_, modified_change_, momentum_change_, angular_change_;

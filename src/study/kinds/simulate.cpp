@@ -10,6 +10,7 @@
 #include "record/frame_selector.hpp"
 #include "settings/identity_text.hpp"
 #include "study/kinds/step_construction.hpp"
+#include "study/measure/energy_gauge.hpp"
 #include "study/problem_spec.hpp"
 
 namespace fw::study {
@@ -73,11 +74,15 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
                           const RunContext& context) {
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
-  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
-  const Solution solution = context.solve(integrator, ivp, control, selector);
+  EnergyWatch watch(EnergyGauge(entry.problem), columns);
+  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, watch);
+  Solution solution = context.solve(integrator, ivp, control, selector);
+  const bool reached_end = solution.status.ok();
+  solution.status = watch.judged(solution.status);
 
   CaseResult result;
-  result.verdict = solution.status.ok() ? Verdict::holds : Verdict::fails;
+  // Numbers that are finite to the end and yet an explosion: a picture worth drawing, but no success.
+  result.verdict = solution.status.ok() ? Verdict::holds : reached_end ? Verdict::not_applicable : Verdict::fails;
   result.reason = solution.status.ok() ? "reached the end" : solution.status.describe();
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
@@ -100,7 +105,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   }
   add_step_construction(ivp, integrator, control, construction, result);
   double end_error = std::numeric_limits<double>::quiet_NaN();
-  if (entry.problem.exact && solution.status.ok()) {
+  if (entry.problem.exact && reached_end) {
     const std::vector<Float128> exact = entry.problem.exact(ivp.t1);
     double sum = 0.0;
     for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -325,7 +330,7 @@ StudyKind simulate_kind() {
        .title = "Trajectories",
        .description = "states over time for every method, step and problem, with the exact solution",
        .summary = columns_of<Row>(),
-       .verdict_meaning = "`holds`: reached the end",
+       .verdict_meaning = "`holds`: reached the end; `not applicable`: with an energy from nowhere",
        .reason_meaning = ""},
       plan_simulate);
 }

@@ -1,0 +1,45 @@
+#include "ode/energy_budget.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fw {
+
+void EnergyBudget::add(const Energies& energies) {
+  double at_rest_zero = 0.0;
+  const double outer = energies["gravitational"];
+  for (const NamedValue& energy : energies.list().subspan(1)) {
+    if (energy.name != "gravitational") at_rest_zero += energy.value;
+  }
+  add(energies.kinetic(), at_rest_zero, outer);
+}
+
+void EnergyBudget::add(double kinetic, double at_rest_zero, double outer) {
+  const double total = kinetic + at_rest_zero + outer;
+  if (!has_started_) {
+    has_started_ = true;
+    start_ = total;
+    outer_start_ = outer;
+  }
+  change_ = total - start_;
+  gain_ = std::max(gain_, change_);
+  const double stored = kinetic + std::abs(at_rest_zero);
+  scale_ = std::max(scale_, stored + std::abs(outer - outer_start_));
+  sum_ = std::max(sum_, stored + std::abs(outer));
+}
+
+double EnergyBudget::growth_factor() const {
+  if (gain_ <= 0.0) return 1.0;
+  const double before = scale_ - gain_;
+  return before > 0.0 ? scale_ / before : std::numeric_limits<double>::infinity();
+}
+
+bool EnergyBudget::has_exploded() const {
+  constexpr double share = 0.99;
+  // A system at rest gains what rounding leaves.
+  constexpr double rounding = 1e-9;
+  return gain_ > rounding * magnitude() && gain_ >= share * scale_;
+}
+
+}  // namespace fw
