@@ -19,7 +19,7 @@ struct WatchedProblem {
   std::string quantity;  ///< "energy", or the invariant's name
   std::string unit;
   std::function<double(double t, ConstVectorRef y)> value;
-  EnergyGauge gauge;  ///< the parts of `value`, where it is an energy
+  EnergyGauge gauge;                                     ///< the parts of `value`, where it is an energy
   const mechanics::MassSpringSystem* springs = nullptr;  ///< null: no mass-spring system
   bool is_damped = false;           ///< energy leaves through dampers, and the power is known
   bool is_free = false;             ///< no outer force: linear and angular momentum are conserved

@@ -82,7 +82,9 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
 
   CaseResult result;
   // Numbers that are finite to the end and yet an explosion: a picture worth drawing, but no success.
-  result.verdict = solution.status.ok() ? Verdict::holds : reached_end ? Verdict::not_applicable : Verdict::fails;
+  result.verdict = solution.status.ok() ? Verdict::holds
+                   : reached_end        ? Verdict::not_applicable
+                                        : Verdict::fails;
   result.reason = solution.status.ok() ? "reached the end" : solution.status.describe();
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
