@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The JSON schemas that `federwerk schema` prints: every study of the project is valid, and for every declared
 setting and every option of a method a misspelt name, a wrong type and a value out of range are refused by the schema
-and by the program alike. The program reads all files of a kind at once (`federwerk check`).
+and by the program alike. The program reads all files at once (`federwerk check`).
 
 usage: schemas_test.py FEDERWERK [unittest arguments]
 """
@@ -18,6 +18,8 @@ import tomllib
 import unittest
 
 import jsonschema
+
+from scene_samples import FLAWED_SCENES, MISSING, SCENES
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 STUDIES = ROOT / "studies"
@@ -51,140 +53,6 @@ BASES = {
                             {"path": "problem[0].t_end", "from": 1.0, "to": 2.0, "count": 2}],
               "study": {"kind": "simulate", "methods": ["rk4"], "steps": [0.1], "problem": [OSCILLATOR]}},
 }
-
-
-WORLD = {"title": "T", "world": {}, "anchor": [{"particle": 0, "stiffness": 1.0}],
-         "obstacle": [{"shape": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 1.0},
-                      {"shape": "sphere", "centre": [0, 0, 0], "radius": 1.0, "stiffness": 1.0},
-                      {"shape": "box", "lower": [0, 0, 0], "upper": [1, 1, 1], "stiffness": 1.0}]}
-CHAIN = {"kind": "chain", "count": 3, "length": 1.0, "mass": 1.0, "stiffness": 1.0}
-CLOTH = {"kind": "cloth", "counts": [3, 3], "size": [1.0, 1.0], "total_mass": 1.0, "stiffness": 1.0}
-GRID = {"kind": "grid", "counts": [3, 3, 3], "spacing": 1.0, "density": 1.0,
-        "stiffness": {"structural": 1.0, "shear": 2.0}}
-# Valid scenes with all sections.
-SCENES = {
-    "scene-explicit": {**WORLD, "particles": {"position": [[0, 0, 0], [1, 0, 0]], "mass": 1.0},
-                       "springs": {"between": [[0, 1]], "stiffness": 1.0}},
-    "scene-chain": {**WORLD, "generate": CHAIN},
-    "scene-cloth": {**WORLD, "generate": CLOTH},
-    "scene-grid": {**WORLD, "generate": GRID},
-    "scene-block": {**WORLD, "generate": {**GRID, "kind": "block", "stiffness": 1.0}},
-}
-
-NAN, INFINITE, MISSING = float("nan"), float("inf"), object()
-
-# Scenes with one flaw: a valid one, the place and what is put there; what the message has to contain; whether the
-# schema sees it too. What it does not see are sizes and indices that depend on other values, names of points that
-# another kind of scene has, relations between values, and numbers that are not finite.
-FLAWED_SCENES = [
-    ("scene-explicit", ("title",), 3, "title: found 3, expected a string", True),
-    ("scene-explicit", ("title",), ["T"], "title: found an array of 1 entry", True),
-    ("scene-explicit", ("world",), 3, "expected a section [world]", True),
-    ("scene-explicit", ("world", "gravity"), [0, 0], "gravity: found an array of 2 entries", True),
-    ("scene-explicit", ("world", "gravity"), [0, 0, NAN], "gravity[2]: found nan", False),
-    ("scene-explicit", ("world", "gravity"), {"z": -9.81}, "gravity: found a table", True),
-    ("scene-explicit", ("world", "drag"), NAN, "drag: found nan, expected a finite number >= 0", False),
-    ("scene-explicit", ("world", "drag"), -1e-300, "drag: found -1e-300", True),
-    ("scene-explicit", ("particles", "position"), [[0, 0], [1, 0, 0]], "position[0]: found an array of 2", True),
-    ("scene-explicit", ("particles", "position"), [[0, 0, 0], [1, 0, 0, 0]], "position[1]: found an array of 4", True),
-    ("scene-explicit", ("particles", "position"), [[0, 0, 0], [1, 0, "x"]], "position[1][2]: found the string", True),
-    ("scene-explicit", ("particles", "position"), [[0, 0, 0], [1, 0, NAN]], "position[1][2]: found nan", False),
-    ("scene-explicit", ("particles", "position"), [], "position: found an empty list", True),
-    ("scene-explicit", ("particles", "position"), MISSING, "missing key \"position\"", True),
-    ("scene-explicit", ("particles", "mass"), MISSING, "missing key \"mass\"", True),
-    ("scene-explicit", ("particles", "mass"), [1.0], "one number per particle (2)", False),
-    ("scene-explicit", ("particles", "mass"), [1.0, 0.0], "mass[1]: found 0.0, expected a finite number > 0", True),
-    ("scene-explicit", ("particles", "mass"), [1.0, True], "mass[1]: found true", True),
-    ("scene-explicit", ("particles", "mass"), INFINITE, "mass: found inf", False),
-    ("scene-explicit", ("particles", "mass"), {"all": 1.0}, "mass: found a table", True),
-    ("scene-explicit", ("particles", "fixed"), [0, 0], "fixed[1]: found particle 0 again", True),
-    ("scene-explicit", ("particles", "fixed"), [2], "fixed[0]: found 2", False),
-    ("scene-explicit", ("particles", "fixed"), [-1], "fixed[0]: found -1", True),
-    ("scene-explicit", ("particles", "fixed"), [0.5], "fixed[0]: found 0.5", True),
-    ("scene-explicit", ("particles", "fixed"), "all", "fixed: found the string \"all\"", True),
-    ("scene-explicit", ("particles", "velocity"), [[0, 0, 0]], "one vector per particle (2)", False),
-    ("scene-explicit", ("particles", "velocity"), [0, 0, 0], "velocity[0]: found 0", True),
-    ("scene-explicit", ("springs",), 7, "springs: found 7", True),
-    ("scene-explicit", ("springs",), [[0, 1]], "springs: found an array of 1 entry, expected sections", True),
-    ("scene-explicit", ("springs", "between"), [[0, 1, 1]], "between[0]: found an array of 3 entries", True),
-    ("scene-explicit", ("springs", "between"), [[0]], "between[0]: found an array of 1 entry", True),
-    ("scene-explicit", ("springs", "between"), [0, 1], "between[0]: found 0, expected a pair", True),
-    ("scene-explicit", ("springs", "between"), [[0, -1]], "between[0][1]: found -1", True),
-    ("scene-explicit", ("springs", "between"), [[0, 2]], "between[0][1]: found 2", False),
-    ("scene-explicit", ("springs", "between"), [[1, 1]], "from particle 1 to itself", False),
-    ("scene-explicit", ("springs", "between"), MISSING, "missing key \"between\"", True),
-    ("scene-explicit", ("springs", "stiffness"), MISSING, "missing key \"stiffness\"", True),
-    ("scene-explicit", ("springs", "stiffness"), [1, 2], "one number per spring (1)", False),
-    ("scene-explicit", ("springs", "stiffness"), [-1], "stiffness[0]: found -1", True),
-    ("scene-explicit", ("springs", "damping"), "1", "damping: found the string \"1\"", True),
-    ("scene-explicit", ("springs", "rest_length"), -0.1, "rest_length: found -0.1", True),
-    ("scene-explicit", ("springs", "rest_length"), [NAN], "rest_length[0]: found nan", False),
-    ("scene-explicit", ("springs", "law"), "Hooke", "did you mean \"hooke\"", True),
-    ("scene-explicit", ("springs",), {"between": [[0, 1]], "stiffness": 1.0, "law": "strain", "rest_length": 0},
-     "rest_length: found 0, expected a finite number > 0", False),
-    ("scene-explicit", ("springs",), [{"between": [[0, 1]], "stiffness": 1.0, "name": 7}],
-     "[springs[0]] name: found 7", True),
-    ("scene-explicit", ("springs",), [{"between": [], "name": "a", "stiffness": 1}] * 2,
-     "[springs[1]] name: found \"a\" again", False),
-    ("scene-explicit", ("generate",), CHAIN, "beside [generate], expected one of them", False),
-    ("scene-explicit", ("constraint",), [{"kind": "distance"}], "constraint", True),
-    ("scene-explicit", ("particels",), {}, "did you mean \"particles\"", True),
-    ("scene-explicit", ("anchors",), [{}], "did you mean \"anchor\"", True),
-    ("scene-explicit", ("anchor",), {"particle": 0, "stiffness": 1.0}, "expected sections [[anchor]]", True),
-    ("scene-explicit", ("anchor", 0, "particle"), "al", "did you mean \"all\"", True),
-    ("scene-explicit", ("anchor", 0, "particle"), "top_edge", "particle: found the string \"top_edge\"", False),
-    ("scene-explicit", ("anchor", 0, "particle"), 2, "particle: found 2", False),
-    ("scene-explicit", ("anchor", 0, "particle"), 0.0, "particle: found 0.0", False),
-    ("scene-explicit", ("anchor", 0, "particle"), [0, 0], "particle[1]: found particle 0 again", False),
-    ("scene-explicit", ("anchor", 0, "particle"), [], "found no particle", False),
-    ("scene-explicit", ("anchor", 0, "position"), [0, 0], "position: found an array of 2 entries", True),
-    ("scene-explicit", ("anchor", 0, "position"), [0, 0, INFINITE], "position[2]: found inf", False),
-    ("scene-explicit", ("anchor", 0, "stiffness"), MISSING, "[anchor[0]]: missing key \"stiffness\"", True),
-    ("scene-explicit", ("obstacle", 0, "shape"), "cone", "[obstacle[0]] shape: found the string \"cone\"", True),
-    ("scene-explicit", ("obstacle", 0, "shape"), MISSING, "[obstacle[0]]: missing key \"shape\"", True),
-    ("scene-explicit", ("obstacle", 0, "radius"), 1.0, "unknown key \"radius\" in [obstacle[0]]", True),
-    ("scene-explicit", ("obstacle", 0, "normal"), [0, 0, 0], "normal: found the zero vector", False),
-    ("scene-explicit", ("obstacle", 1, "radius"), MISSING, "[obstacle[1]]: missing key \"radius\"", True),
-    ("scene-explicit", ("obstacle", 1, "radius"), NAN, "[obstacle[1]] radius: found nan", False),
-    ("scene-explicit", ("obstacle", 2, "upper"), [1, 1, -1], "upper[2]: found -1", False),
-    ("scene-chain", ("generate", "kind"), "mesh", "kind: found the string \"mesh\"", True),
-    ("scene-chain", ("generate", "kind"), MISSING, "[generate]: missing key \"kind\"", True),
-    ("scene-chain", ("generate", "count"), MISSING, "[generate]: missing key \"count\"", True),
-    ("scene-chain", ("generate", "count"), 2.5, "count: found 2.5", True),
-    ("scene-chain", ("generate", "count"), 2000000000, "count: found 2e+09 particles", False),
-    ("scene-chain", ("generate", "length"), MISSING, "found none of \"length\" and \"spacing\"", True),
-    ("scene-chain", ("generate", "spacing"), 1.0, "spacing: found both of \"length\" and \"spacing\"", True),
-    ("scene-chain", ("generate", "direction"), [0, 0, 0], "direction: found the zero vector", False),
-    ("scene-chain", ("generate", "plane"), "xy", "unknown key \"plane\" in [generate]", True),
-    ("scene-chain", ("generate", "density"), 1.0, "density: found \"mass\" and \"density\", expected", True),
-    ("scene-chain", ("generate", "mass"), MISSING, "found none of \"mass\", \"total_mass\" and \"density\"", True),
-    ("scene-chain", ("generate", "mass"), [1, 1], "one number per particle (3)", False),
-    ("scene-chain", ("generate", "springs"), ["bend", "bend"], "springs[1]: found \"bend\" again", False),
-    ("scene-chain", ("generate", "springs"), "bend", "springs: found the string \"bend\"", True),
-    ("scene-chain", ("generate", "springs"), ["shear"], "springs[0]: found the string \"shear\"", True),
-    ("scene-chain", ("generate", "stiffness"), {"shear": 1.0}, "unknown key \"shear\" in [generate.stiff", True),
-    ("scene-chain", ("generate", "stiffness"), {"structural": "1"}, "structural: found the string \"1\"", True),
-    ("scene-chain", ("generate", "stiffness"), {}, "[generate.stiffness]: missing key \"structural\"", False),
-    ("scene-chain", ("generate", "stiffness"), MISSING, "[generate]: missing key \"stiffness\"", True),
-    ("scene-chain", ("generate", "pinned"), "left_face", "pinned: found the string \"left_face\"", False),
-    ("scene-chain", ("generate", "pinned"), ["start", 3], "pinned[1]: found 3", False),
-    ("scene-chain", ("generate", "pinned"), [-1], "pinned[0]: found -1", True),
-    ("scene-chain", ("generate", "origin"), [0, NAN, 0], "origin[1]: found nan", False),
-    ("scene-chain", ("generate", "velocity"), 1.0, "velocity: found 1.0", True),
-    ("scene-cloth", ("generate", "counts"), [3], "counts: found one entry, expected 2", True),
-    ("scene-cloth", ("generate", "counts"), [3, 3, 3], "counts: found 3 entries, expected 2", True),
-    ("scene-cloth", ("generate", "counts"), [3, 1], "counts[1]: found 1", True),
-    ("scene-cloth", ("generate", "counts"), [3, 3.5], "counts[1]: found 3.5", True),
-    ("scene-cloth", ("generate", "counts"), [100000, 100000], "counts: found 1e+10 particles", False),
-    ("scene-cloth", ("generate", "size"), [1.0, 1.0, 1.0], "size: found 3 entries, expected 2", True),
-    ("scene-cloth", ("generate", "size"), [1.0, -1.0], "size[1]: found -1.0", True),
-    ("scene-cloth", ("generate", "plane"), "zx", "plane: found the string \"zx\"", True),
-    ("scene-cloth", ("generate", "total_mass"), NAN, "total_mass: found nan", False),
-    ("scene-grid", ("generate", "spacing"), 0, "spacing: found 0, expected a finite number > 0", True),
-    ("scene-grid", ("generate", "damping"), {"structral": 1.0}, "did you mean \"structural\"", True),
-    ("scene-block", ("generate", "springs"), ["bend"], "springs[0]: found the string \"bend\"", True),
-    ("scene-block", ("generate", "denisty"), 1.0, "unknown key \"denisty\"", True),
-]
 
 
 def toml(table, path=""):
@@ -389,7 +257,7 @@ class Schemas(unittest.TestCase):
                 document = tomllib.loads(file.read_text(encoding="utf-8"))
                 self.assertEqual([error.message for error in validator_of("scene").iter_errors(document)], [])
 
-    def test_every_file_of_the_project_is_valid_for_the_program(self):
+    def test_the_program_accepts_every_file_of_the_project(self):
         answers, _ = self.project.communicate(timeout=120)
         answers = json.loads(answers)
         self.assertEqual([answer["message"] for answer in answers if not answer["valid"]], [])
@@ -407,21 +275,21 @@ class Schemas(unittest.TestCase):
                 flawed = list(mutations(kind, schema_of(kind.split("-")[0])))
                 self.assertGreater(len(flawed), 25, kind)
                 samples.append(len(cases) + 17 * place % len(flawed))
-                cases += [(kind, key, document) for key, document in flawed]
+                cases += [(kind, key, document, toml(document)) for key, document in flawed]
             self.assertGreater(len(cases), 2500)
             files = [pathlib.Path(name) / f"{number}.toml" for number in range(len(cases))]
-            for file, (_, _, document) in zip(files, cases):
-                file.write_text(toml(document), encoding="utf-8")
+            for file, (_, _, _, text) in zip(files, cases):
+                file.write_text(text, encoding="utf-8")
             code, answers = checked(files)
             self.assertEqual(code, 2)
             self.assertEqual(len(answers), len(cases))
-            for (kind, key, document), answer in zip(cases, answers):
-                with self.subTest(kind=kind, key=key, text=toml(document)):
+            for (kind, key, document, text), answer in zip(cases, answers):
+                with self.subTest(kind=kind, key=key, text=text):
                     self.assertFalse(validator_of(kind.split("-")[0]).is_valid(document), "the schema accepts it")
                     self.assertFalse(answer["valid"], "the program accepts it")
                     self.assertIn(key.rstrip("z"), answer["message"])
             for number in samples:  # whoever is to compute it says the same
-                with self.subTest(kind=cases[number][0], text=files[number].read_text(encoding="utf-8")):
+                with self.subTest(kind=cases[number][0], text=cases[number][3]):
                     self.assertEqual(refusal(files[number]), (2, f"federwerk: {answers[number]['message']}\n"))
 
     def test_flaws_of_scenes_are_refused_by_the_program_and_where_it_can_by_the_schema(self):
