@@ -156,9 +156,11 @@ def compare_study(study, directory, before, after):
 
 
 def option_values(option):
-    """The listed values of an option but the default one: those of "cg, cholesky or lu"."""
-    names = re.split(r", | or ", option["expected"])
-    if not all(re.fullmatch(r"[a-z][a-z0-9_]*", name) for name in names) or len(names) < 2:
+    """The values that an option can have but the default one: its choices; programs that print no choices say "cg,
+    cholesky or lu"."""
+    names = option.get("choices") or re.split(r", | or ", option["expected"])
+    if "choices" not in option and (
+            len(names) < 2 or not all(re.fullmatch(r"[a-z][a-z0-9_]*", name) for name in names)):
         return []
     return [name for name in names if name != option["default"]]
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the catalogue of schemes into docs/methods.md, between its marks, as the program prints it.
+"""Writes the catalogue of schemes and their options into docs/methods.md, between its marks, as the program prints
+them.
 
 usage: update_methods_page.py [--check] [FEDERWERK]
 
@@ -8,13 +9,16 @@ With --check nothing is written; exit code 1 says that the page is out of date. 
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "methods.md"
-BEGIN = "<!-- catalogue: begin (written by scripts/update_methods_page.py) -->\n"
-END = "<!-- catalogue: end -->\n"
+MARK = re.compile(r"(<!-- (catalogue|options): begin \(written by scripts/update_methods_page.py\) -->\n)(.*?)"
+                  r"(<!-- \2: end -->\n)", re.DOTALL)
+COMMANDS = {"catalogue": ["list", "methods", "--markdown"],
+            "options": ["schema", "method-options", "--form", "settings"]}
 
 
 def main(arguments):
@@ -24,14 +28,14 @@ def main(arguments):
         print(__doc__.strip(), file=sys.stderr)
         return 2
     executable = rest[0] if rest else str(ROOT / "build" / "release" / "bin" / "federwerk")
-    tables = subprocess.run([executable, "list", "methods", "--markdown"], check=True, capture_output=True,
-                            encoding="utf-8").stdout
     old = PAGE.read_text(encoding="utf-8")
-    if old.count(BEGIN) != 1 or old.count(END) != 1:
-        print(f"{PAGE}: expected the marks {BEGIN.strip()} and {END.strip()} once each", file=sys.stderr)
+    found = [match.group(2) for match in MARK.finditer(old)]
+    if found != list(COMMANDS):
+        print(f"{PAGE}: found the marked parts {found}, expected {list(COMMANDS)}", file=sys.stderr)
         return 2
-    head, rest_of_page = old.split(BEGIN)
-    new = head + BEGIN + tables + "\n" + END + rest_of_page.split(END)[1]
+    printed = {part: subprocess.run([executable, *command], check=True, capture_output=True, encoding="utf-8").stdout
+               for part, command in COMMANDS.items()}
+    new = MARK.sub(lambda match: f"{match.group(1)}{printed[match.group(2)]}\n{match.group(4)}", old)
     if new == old:
         print("docs/methods.md is up to date")
         return 0

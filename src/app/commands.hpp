@@ -24,5 +24,6 @@ void add_run_command(CLI::App& app, Action& action, const std::string& command_l
 void add_verify_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_show_command(CLI::App& app, Action& action);
 void add_schema_command(CLI::App& app, Action& action);
+void add_check_command(CLI::App& app, Action& action);
 
 }  // namespace fw::app

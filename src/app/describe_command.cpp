@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/commands.hpp"
+#include "catalog/declared_options.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "catalog/study_kinds.hpp"
@@ -37,7 +38,7 @@ struct DescribedMethod {
 
 std::string describe_method(const DescribedMethod& method) {
   const MethodInfo& info = method.info;
-  const std::vector<catalog::OptionInfo>& options = method.entry.options;
+  const std::vector<settings::SettingDescription>& options = method.entry.options;
   std::string text = fmt::format("{}\n{}\n\n", method.call, info.title);
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<24} {}\n", label, value);
@@ -61,10 +62,13 @@ std::string describe_method(const DescribedMethod& method) {
   line("works on", works_on(info.needs));
   line("literature", info.reference);
   if (!options.empty()) {
-    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", method.entry.name, options.front().name,
-                        options.front().default_value);
-    for (const catalog::OptionInfo& option : options) {
-      text += fmt::format("  {:<24} {} (default {})\n", option.name, option.expected, option.default_value);
+    text += fmt::format("\nOptions, as in \"{}[{}={}]\"\n", method.entry.name, options.front().info.name,
+                        catalog::default_text(options.front()));
+    for (const settings::SettingDescription& option : options) {
+      const std::string standard = catalog::default_text(option);
+      text += fmt::format("  {:<24} {}{}\n", option.info.name, settings::expectation(option.info),
+                          standard.empty() ? "" : " (default " + standard + ")");
+      text += fmt::format("  {:<24} {}\n", "", option.info.doc);
     }
   }
   const std::vector<schemes::NamedProperty> derived =
@@ -139,9 +143,16 @@ std::string method_json(const DescribedMethod& method) {
   json.key("symplectic").value(info.is_symplectic).key("a_stable").value(info.is_a_stable);
   json.key("l_stable").value(info.is_l_stable).key("reference").value(info.reference);
   json.key("options").begin_array();
-  for (const catalog::OptionInfo& option : method.entry.options) {
-    json.begin_object().key("name").value(option.name).key("default").value(option.default_value);
-    json.key("expected").value(option.expected).end_object();
+  for (const settings::SettingDescription& option : method.entry.options) {
+    json.begin_object().key("name").value(option.info.name);
+    json.key("default").value(catalog::default_text(option));
+    json.key("expected").value(settings::expectation(option.info)).key("meaning").value(option.info.doc);
+    if (!option.info.choices.empty()) {
+      json.key("choices").begin_array();
+      for (const std::string& name : option.info.choices) json.value(name);
+      json.end_array();
+    }
+    json.end_object();
   }
   json.end_array();
   json.key("derived").begin_object();

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -37,19 +38,32 @@ settings::SectionDescription scene_description() {
 }
 
 /// The methods with their options in brackets, as if they were tables.
-std::string schema_of_options() {
+settings::SectionDescription options_description() {
   settings::SectionDescription all{
       .info = {"method-options", "Options of methods, as in `newmark[beta=0.3]`."}};
   for (const catalog::MethodEntry& entry : catalog::methods()) {
-    settings::SectionDescription method{.info = {entry.name, entry.info().title}};
-    for (const catalog::OptionInfo& option : entry.options) {
-      method.settings.push_back(option.setting.value_or(settings::SettingDescription{
-          {.name = option.name, .type = settings::Type::string, .doc = option.expected},
-          option.default_value}));
-    }
-    if (!method.settings.empty()) all.sections.push_back(std::move(method));
+    if (entry.options.empty()) continue;
+    all.sections.push_back({.info = {entry.name, entry.info().title}, .settings = entry.options});
   }
-  return settings::json_schema(all, {.title = "federwerk: options of methods"});
+  return all;
+}
+
+/// The options as tables in Markdown, of methods with the same ones once.
+std::string options_page() {
+  std::vector<std::pair<std::string, std::string>> tables;  // and the names of the methods
+  for (const settings::SectionDescription& method : options_description().sections) {
+    const std::string table = settings::markdown_table(method, "option");
+    const auto same =
+        std::find_if(tables.begin(), tables.end(), [&](const auto& one) { return one.first == table; });
+    if (same == tables.end()) {
+      tables.emplace_back(table, fmt::format("`{}`", method.info.name));
+    } else {
+      same->second += fmt::format(", `{}`", method.info.name);
+    }
+  }
+  std::string page;
+  for (const auto& [table, names] : tables) page += fmt::format("\n{}:\n\n{}", names, table);
+  return page;
 }
 
 std::string schema_of(const study::StudyKind& kind) {
@@ -104,7 +118,10 @@ std::string text_of(const std::string& name, const std::string& form) {
     return settings::json_schema(scene_description(), {.title = "federwerk: scene"});
   }
   if (name == "scene" && form == "settings") return settings_page(scene_description());
-  if (name == "method-options" && form == "json") return schema_of_options();
+  if (name == "method-options" && form == "json") {
+    return settings::json_schema(options_description(), {.title = "federwerk: options of methods"});
+  }
+  if (name == "method-options" && form == "settings") return options_page();
   if (name == "scene" || name == "method-options") {
     throw InputError(fmt::format("found --form {}, which \"{}\" does not have", form, name));
   }

@@ -139,9 +139,9 @@ void print_summary(const std::string& output, const Solution& solution, const re
 std::unique_ptr<Integrator> make_method(const SimulateArguments& arguments) {
   catalog::MethodCall call = catalog::parse_method_call(arguments.method);
   if (!arguments.has_petsc) return catalog::make_method(call);
-  const std::vector<catalog::OptionInfo>& options = catalog::find_method(call.name).options;
+  const auto& options = catalog::find_method(call.name).options;
   if (std::none_of(options.begin(), options.end(),
-                   [](const auto& option) { return option.name == "petsc"; })) {
+                   [](const auto& option) { return option.info.name == "petsc"; })) {
     throw InputError(fmt::format("--petsc: method \"{}\" takes no options of PETSc", call.name));
   }
   if (!call.options.emplace("petsc", arguments.petsc).second) {

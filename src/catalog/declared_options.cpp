@@ -21,13 +21,6 @@ bool parse(const std::string& text, Number& number) {
   return error == std::errc() && stop == end;
 }
 
-std::string default_text(const settings::SettingDescription& setting) {
-  if (!setting.info.default_text.empty() || !setting.default_value) return setting.info.default_text;
-  if (const auto* text = std::get_if<std::string>(&*setting.default_value)) return *text;
-  if (const auto* number = std::get_if<double>(&*setting.default_value)) return fmt::format("{}", *number);
-  return toml_text(*setting.default_value);
-}
-
 }  // namespace
 
 void OptionReader::visit(const settings::Setting& setting) {
@@ -43,6 +36,8 @@ void OptionReader::visit(const settings::Setting& setting) {
     double number = 0.0;
     if (!parse(text, number) || !std::isfinite(number) || !info.range.contains(number)) fail();
     setting.assign(number);
+  } else if (info.type == settings::Type::integer && !info.word.empty() && text == info.word) {
+    setting.assign(text);
   } else if (info.type == settings::Type::integer) {
     std::int64_t number = 0;
     if (!parse(text, number) || number < info.lowest || number > info.highest) fail();
@@ -54,12 +49,11 @@ void OptionReader::visit(const settings::Setting& setting) {
   }
 }
 
-std::vector<OptionInfo> option_list(const settings::SectionDescription& description) {
-  std::vector<OptionInfo> list;
-  for (const settings::SettingDescription& setting : description.settings) {
-    list.push_back({setting.info.name, default_text(setting), setting.info.doc, setting});
-  }
-  return list;
+std::string default_text(const settings::SettingDescription& option) {
+  if (!option.info.default_text.empty() || !option.default_value) return option.info.default_text;
+  if (const auto* text = std::get_if<std::string>(&*option.default_value)) return *text;
+  if (const auto* number = std::get_if<double>(&*option.default_value)) return fmt::format("{}", *number);
+  return toml_text(*option.default_value);
 }
 
 }  // namespace fw::catalog

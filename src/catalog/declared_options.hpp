@@ -1,9 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "catalog/method_call.hpp"
+#include "catalog/methods.hpp"
 #include "settings/archive.hpp"
 
 namespace fw::catalog {
@@ -32,15 +33,12 @@ class OptionReader final : public settings::Archive {
   const MethodOptions& given_;
 };
 
-/// What a description of settings says as a list of options.
-std::vector<OptionInfo> option_list(const settings::SectionDescription& description);
-
 /// The options that `declare(Archive&, Options&)` names, with the defaults of `options`.
 template <class Options>
-std::vector<OptionInfo> declared_options(Options options = {}) {
+std::vector<settings::SettingDescription> declared_options(Options options = {}) {
   settings::Describer describer({.name = "options"});
   declare(describer, options);
-  return option_list(describer.description());
+  return describer.description().settings;
 }
 
 /// The options that a call gives, the others as they are in `options`.
@@ -51,10 +49,22 @@ Options read_options(const MethodOptions& given, Options options = {}) {
   return options;
 }
 
-/// The same with the defaults of a fresh struct, as a function to hand on.
-template <class Options>
-Options read_declared(const MethodOptions& given) {
-  return read_options<Options>(given, Options{});
+/// A method whose options are declared, with these defaults: both its code and its theory are made from
+/// them.
+template <class Options, class Make, class Theory>
+MethodEntry declared_method(std::string name, const Options& defaults, Make make, Theory theory) {
+  return {std::move(name), declared_options(defaults),
+          [defaults, theory](const MethodOptions& given) { return theory(read_options(given, defaults)); },
+          [defaults, make](const MethodOptions& given) { return make(read_options(given, defaults)); }};
 }
+
+/// The same where theory says nothing of the method.
+template <class Options, class Make>
+MethodEntry declared_method(std::string name, const Options& defaults, Make make) {
+  return declared_method(std::move(name), defaults, make, [](const Options&) { return analysis::Theory{}; });
+}
+
+/// The default as a call in brackets has it, or what it is worked out from; nothing where there is none.
+std::string default_text(const settings::SettingDescription& option);
 
 }  // namespace fw::catalog

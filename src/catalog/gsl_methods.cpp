@@ -1,6 +1,6 @@
-#include "catalog/method_options.hpp"
+#include "catalog/declared_options.hpp"
 #include "catalog/oracle_methods.hpp"
-#include "oracles/gsl/odeiv2.hpp"
+#include "catalog/oracle_options.hpp"
 #include "schemes/composed_tableau.hpp"
 #include "schemes/explicit_tableaus.hpp"
 #include "schemes/implicit_tableaus.hpp"
@@ -31,17 +31,14 @@ schemes::SchemeData table_of(const std::string& stepper) {
 std::vector<MethodEntry> gsl_methods() {
   std::vector<MethodEntry> list;
   for (const oracles::GslStepper& stepper : oracles::gsl_steppers()) {
-    list.push_back({"gsl:" + stepper.name,
-                    {{"tolerance_factor", fmt::format("{}", stepper.tolerance_factor),
-                      "GSL's own tolerances as a fraction of those given"}},
-                    [name = stepper.name](const MethodOptions&) {
-                      return analysis::theory_on_linear_systems({table_of(name)});
-                    },
-                    [stepper](const MethodOptions& options) {
-                      return oracles::make_gsl_stepper(
-                          stepper.name, {.tolerance_factor = positive_number(options, "tolerance_factor",
-                                                                             stepper.tolerance_factor)});
-                    }});
+    list.push_back(declared_method(
+        "gsl:" + stepper.name, oracles::GslOptions{.tolerance_factor = stepper.tolerance_factor},
+        [name = stepper.name](const oracles::GslOptions& options) {
+          return oracles::make_gsl_stepper(name, options);
+        },
+        [name = stepper.name](const oracles::GslOptions&) {
+          return analysis::theory_on_linear_systems({table_of(name)});
+        }));
   }
   return list;
 }

@@ -1,5 +1,7 @@
 #include "catalog/integrator_options.hpp"
 
+#include "linalg/linear_solver.hpp"
+
 namespace fw::integrators {
 
 using settings::Archive;
@@ -18,33 +20,33 @@ void declare(Archive& a, ControllerOptions& options) {
            {{"i", ControllerKind::integral},
             {"pi", ControllerKind::proportional_integral},
             {"pid", ControllerKind::proportional_integral_derivative}})
-        .doc("i, pi or pid (how steps follow from error estimates)"));
+        .doc("how steps follow from error estimates"));
   a(choice("norm", options.norm, {{"rms", ErrorNorm::root_mean_square}, {"max", ErrorNorm::maximum}})
-        .doc("rms or max (how the error vector becomes a number)"));
+        .doc("how the error vector becomes a number"));
   a(setting("safety", options.safety).between(1e-3, 1.0).doc("factor of the predicted step"));
 }
 
 void declare(Archive& a, NewmarkOptions& options) {
   a(setting("beta", options.beta)
         .between(0.0, 0.5)
-        .doc("0 (central differences) to 0.5; 0.25 is average acceleration"));
-  a(setting("gamma", options.gamma).between(0.5, 1.0).doc("0.5 (order 2) to 1 (numerical damping)"));
+        .doc("0 is central differences, 0.25 average acceleration"));
+  a(setting("gamma", options.gamma).between(0.5, 1.0).doc("0.5 has order 2, more is numerical damping"));
 }
 
 void declare(Archive& a, HhtAlphaOptions& options) {
   a(setting("alpha", options.alpha)
         .between(-1.0 / 3.0, 0.0)
-        .doc("-1/3 to 0, as in the original paper; 0: no numerical damping"));
+        .doc("as in the original paper; 0: no numerical damping"));
 }
 
 void declare(Archive& a, GeneralisedAlphaOptions& options) {
   a(setting("rho_infinity", options.rho_infinity)
         .between(0.0, 1.0)
-        .doc("spectral radius at infinite frequency, 0 to 1"));
+        .doc("spectral radius at infinite frequency"));
 }
 
 void declare(Archive& a, AverageVectorFieldOptions& options) {
-  a(setting("quadrature_points", options.quadrature_points).integers(1, 8).doc("Gauss points, 1 to 8"));
+  a(setting("quadrature_points", options.quadrature_points).integers(1, 8).doc("Gauss points"));
 }
 
 void declare(Archive& a, ExponentialOptions& options) {
@@ -61,7 +63,7 @@ void declare(Archive& a, GautschiOptions& options) {
            {{"gautschi", TrigonometricFilter::gautschi},
             {"deuflhard", TrigonometricFilter::deuflhard},
             {"mollified_impulse", TrigonometricFilter::mollified_impulse}})
-        .doc("gautschi, deuflhard or mollified_impulse"));
+        .doc("filter of the forces"));
 }
 
 void declare(Archive& a, RespaOptions& options) {
@@ -81,4 +83,34 @@ void declare(Archive& a, XpbdOptions& options) {
   a(setting("iterations", options.iterations).integers(1, most_inner_steps).doc("sweeps per substep"));
 }
 
+void declare(Archive& a, RungeKuttaChebyshevOptions& options) {
+  a(setting("stages", options.stages)
+        .integers(fewest_chebyshev_stages, most_chebyshev_stages)
+        .or_word("auto", 0)
+        .doc("number of stages; auto: from the step and the spectral radius of J"));
+}
+
 }  // namespace fw::integrators
+
+namespace fw::catalog {
+
+void declare(settings::Archive& a, LinearisedEulerCall& call) {
+  using settings::choice;
+  using settings::setting;
+  std::vector<std::string> solvers;
+  for (const linalg::LinearSolverInfo& solver : linalg::linear_solvers()) solvers.push_back(solver.name);
+  a(setting("linear_solver", call.linear_solver).choices(solvers).doc("of the linear equations of a step"));
+  a(setting("linear_tolerance", call.linear_tolerance)
+        .above(0.0)
+        .up_to(1.0)
+        .doc("relative residual of iterative solvers"));
+  a(setting("petsc", call.petsc)
+        .doc("options of the linear solver petsc, such as -ksp_type cg -pc_type gamg, without commas"));
+  a(choice("tangent", call.tangent,
+           {{"exact", TangentModel::exact},
+            {"tensile_geometric_term", TangentModel::tensile_geometric_term},
+            {"psd_projection", TangentModel::psd_projection}})
+        .doc("what the matrix has where springs are compressed"));
+}
+
+}  // namespace fw::catalog

@@ -6,7 +6,6 @@
 
 #include "catalog/declared_options.hpp"
 #include "catalog/integrator_options.hpp"
-#include "catalog/method_options.hpp"
 #include "catalog/oracle_methods.hpp"
 #include "core/error.hpp"
 #include "integrators/energy_momentum/discrete_gradient.hpp"
@@ -36,8 +35,9 @@ namespace fw::catalog {
 namespace {
 
 /// Options of a scheme that can choose its own steps.
-const std::vector<OptionInfo>& controller_options() {
-  static const std::vector<OptionInfo> list = declared_options<integrators::ControllerOptions>();
+const std::vector<settings::SettingDescription>& controller_options() {
+  static const std::vector<settings::SettingDescription> list =
+      declared_options<integrators::ControllerOptions>();
   return list;
 }
 
@@ -45,33 +45,11 @@ const std::vector<OptionInfo>& controller_options() {
 /// list.
 template <class Data, class Make>
 MethodEntry with_controller(const Data& data, Make make) {
-  return {data.name, data.has_embedded_solution() ? controller_options() : std::vector<OptionInfo>{},
+  return {data.name,
+          data.has_embedded_solution() ? controller_options() : std::vector<settings::SettingDescription>{},
           of_coefficients(data), [&data, make](const MethodOptions& options) {
             return make(data, read_options<integrators::ControllerOptions>(options));
           }};
-}
-
-linalg::LinearSolverOptions read_linear_solver_options(const MethodOptions& options) {
-  const std::string given = text(options, "linear_solver");
-  const std::string name = given.empty() ? "cg" : given;
-  const auto checked = [](const std::string& option, const std::string& call) {
-    try {
-      return linalg::read_linear_solver(call);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("option {}: {}", option, error.what()));
-    }
-  };
-  checked("linear_solver", name);
-  return checked("petsc", name + " " + text(options, "petsc"));
-}
-
-/// A method whose options are read into a struct, from which both its code and its theory are made.
-template <class Read, class Make, class Theory>
-MethodEntry of_options(std::string name, std::vector<OptionInfo> options, Read read, Make make,
-                       Theory theory) {
-  return {std::move(name), std::move(options),
-          [read, theory](const MethodOptions& given) { return theory(read(given)); },
-          [read, make](const MethodOptions& given) { return make(read(given)); }};
 }
 
 /// Schemes of ours that theory tells as another one, on linear systems at least.
@@ -94,63 +72,47 @@ analysis::Theory alpha_theory(const Options& options) {
       {.rule = analysis::LinearRule::alpha_family, .alpha = integrators::alpha_parameters(options)});
 }
 
+/// `linear_solver` and `petsc` as the options of a linear solver.
+linalg::LinearSolverOptions linear_solver_of(const LinearisedEulerCall& call) {
+  linalg::LinearSolverOptions chosen;
+  try {
+    chosen = linalg::read_linear_solver(call.linear_solver + " " + call.petsc);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("option petsc: {}", error.what()));
+  }
+  chosen.relative_tolerance = call.linear_tolerance;
+  return chosen;
+}
+
 MethodEntry linearised_implicit_euler() {
-  using integrators::LinearisedOptions;
-  const auto read = [](const MethodOptions& options) {
-    LinearisedOptions chosen;
-    chosen.linear_solver = read_linear_solver_options(options);
-    chosen.linear_solver.relative_tolerance = positive_number(options, "linear_tolerance", 1e-10);
-    chosen.tangent = choose<TangentModel>(options, "tangent", chosen.tangent,
-                                          {{"exact", TangentModel::exact},
-                                           {"tensile_geometric_term", TangentModel::tensile_geometric_term},
-                                           {"psd_projection", TangentModel::psd_projection}});
-    return chosen;
+  const auto make = [](const LinearisedEulerCall& call) {
+    return integrators::make_implicit_euler_linearised(
+        {.linear_solver = linear_solver_of(call), .tangent = call.tangent});
   };
   // Newton's first iteration with the exact tangent is the solution where forces are linear.
-  const auto theory = [](const LinearisedOptions& chosen) {
-    if (chosen.tangent != TangentModel::exact) return analysis::Theory{};
+  const auto theory = [](const LinearisedEulerCall& call) {
+    if (call.tangent != TangentModel::exact) return analysis::Theory{};
     return analysis::theory_on_linear_systems(
         {named(schemes::diagonally_implicit_tableaus(), "implicit_euler")});
   };
-  return of_options(integrators::make_implicit_euler_linearised({})->info().name,
-                    {{"linear_solver", "cg", linalg::linear_solver_names()},
-                     {"linear_tolerance", "1e-10", "relative residual of iterative solvers"},
-                     {"petsc", "", "options of the linear solver petsc, such as -ksp_type cg -pc_type gamg"},
-                     {"tangent", "exact", "exact, tensile_geometric_term or psd_projection"}},
-                    read, integrators::make_implicit_euler_linearised, theory);
+  return declared_method(integrators::make_implicit_euler_linearised({})->info().name, LinearisedEulerCall{},
+                         make, theory);
 }
 
 MethodEntry runge_kutta_chebyshev(int order) {
   using integrators::RungeKuttaChebyshevOptions;
-  const RungeKuttaChebyshevOptions defaults{.order = order};
-  const auto read = [defaults](const MethodOptions& options) {
-    RungeKuttaChebyshevOptions chosen = defaults;
-    const auto option = options.find("stages");
-    if (option != options.end()) {
-      const bool automatic = option->second == "auto";
-      chosen.stages = automatic
-                          ? 0
-                          : whole_number(option->first, option->second, integrators::fewest_chebyshev_stages,
-                                         integrators::most_chebyshev_stages, " or auto");
-    }
-    return chosen;
-  };
   const auto theory = [](const RungeKuttaChebyshevOptions& chosen) {
     if (chosen.stages == 0) return analysis::Theory{};  // another scheme at every step
     return analysis::theory_of(schemes::chebyshev_tableau(chosen.order, chosen.stages));
   };
-  return of_options(fmt::format("rkc{}", order),
-                    {{"stages", fmt::format("{}", defaults.stages),
-                      "number of stages, or auto (from the step and the spectral radius of J)"}},
-                    read, integrators::make_runge_kutta_chebyshev, theory);
+  return declared_method(fmt::format("rkc{}", order), RungeKuttaChebyshevOptions{.order = order},
+                         integrators::make_runge_kutta_chebyshev, theory);
 }
 
-/// A scheme with declared options, from which both its code and its theory are made.
+/// A scheme with declared options and a theory of them.
 template <class Options, class Theory>
 MethodEntry with_options(std::unique_ptr<Integrator> (*make)(const Options&), Theory theory) {
-  return of_options(
-      make({})->info().name, declared_options<Options>(),
-      [](const MethodOptions& options) { return read_options<Options>(options); }, make, theory);
+  return declared_method(make({})->info().name, Options{}, make, theory);
 }
 
 /// Structural dynamics, energy–momentum, exponential, graphics and multirate schemes.
@@ -259,17 +221,14 @@ namespace {
 template <class Make>
 auto with_checked_options(const MethodCall& call, Make make) {
   const MethodEntry& entry = find_method(call.name);
+  std::vector<std::string> names;
+  for (const settings::SettingDescription& option : entry.options) names.push_back(option.info.name);
   for (const auto& [name, value] : call.options) {
-    const bool known = std::any_of(entry.options.begin(), entry.options.end(),
-                                   [&name = name](const OptionInfo& option) { return option.name == name; });
-    if (!known) {
-      std::vector<std::string> names;
-      for (const OptionInfo& option : entry.options) names.push_back(option.name);
-      throw InputError(names.empty()
-                           ? fmt::format("method \"{}\" takes no options, found \"{}\"", call.name, name)
-                           : fmt::format("method \"{}\": unknown option \"{}\", expected one of {}",
-                                         call.name, name, fmt::join(names, ", ")));
-    }
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw InputError(names.empty()
+                         ? fmt::format("method \"{}\" takes no options, found \"{}\"", call.name, name)
+                         : fmt::format("method \"{}\": unknown option \"{}\", expected one of {}{}",
+                                       call.name, name, fmt::join(names, ", "), did_you_mean(name, names)));
   }
   try {
     return make(entry);

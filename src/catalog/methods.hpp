@@ -13,6 +13,7 @@
 #include "analysis/theory/method_theory.hpp"
 #include "catalog/method_call.hpp"
 #include "ode/integrator.hpp"
+#include "settings/description.hpp"
 
 namespace fw::catalog {
 
@@ -24,8 +25,8 @@ class MethodEntry {
  public:
   using Make = std::function<std::unique_ptr<Integrator>(const MethodOptions&)>;
 
-  MethodEntry(std::string method_name, std::vector<OptionInfo> method_options, TheoryOfOptions method_theory,
-              Make make_method)
+  MethodEntry(std::string method_name, std::vector<settings::SettingDescription> method_options,
+              TheoryOfOptions method_theory, Make make_method)
       : name(std::move(method_name)),
         options(std::move(method_options)),
         make(std::move(make_method)),
@@ -45,7 +46,7 @@ class MethodEntry {
   }
 
   std::string name;
-  std::vector<OptionInfo> options;
+  std::vector<settings::SettingDescription> options;  ///< type, range, default and meaning
   /// Makes the integrator. Throws InputError for a bad option value; unknown options are checked before.
   Make make;
 

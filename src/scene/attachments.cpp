@@ -8,8 +8,7 @@
 namespace fw::scene {
 namespace {
 
-Vec3<double> read_unit_normal(const CheckedTable& table) {
-  const Vec3<double> normal = table.vec3("normal");
+Vec3<double> unit_normal(const Vec3<double>& normal, const CheckedTable& table) {
   const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
   if (largest == 0.0) table.fail("normal", "found the zero vector, expected a direction");
   const Vec3<double> scaled{normal.x / largest, normal.y / largest, normal.z / largest};
@@ -17,8 +16,8 @@ Vec3<double> read_unit_normal(const CheckedTable& table) {
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
-mechanics::Box read_box(const CheckedTable& table) {
-  const mechanics::Box box{table.vec3("lower"), table.vec3("upper")};
+mechanics::Box box_of(const ObstacleSpec& obstacle, const CheckedTable& table) {
+  const mechanics::Box box{obstacle.lower, obstacle.upper};
   const std::array<double, 3> lower{box.lower.x, box.lower.y, box.lower.z};
   const std::array<double, 3> upper{box.upper.x, box.upper.y, box.upper.z};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -31,27 +30,30 @@ mechanics::Box read_box(const CheckedTable& table) {
 
 }  // namespace
 
-void read_anchors(const CheckedTable& root, const std::vector<PointGroup>& groups, Scene& scene) {
+void add_anchors(const std::vector<AnchorSpec>& anchors, const std::vector<PointGroup>& groups,
+                 SceneFile& file, Scene& scene) {
   const std::size_t count = scene.model.mass.size();
   std::vector<char> fixed(count, 0);
   for (const int i : scene.model.fixed) fixed[static_cast<std::size_t>(i)] = 1;
 
-  for (const CheckedTable& table : root.tables("anchor")) {
-    const auto particles = read_points(table, "particle", count, groups);
+  const std::vector<CheckedTable> tables = file.root.tables("anchor");
+  for (std::size_t k = 0; k < anchors.size(); ++k) {
+    const AnchorSpec& anchor = anchors[k];
+    const CheckedTable& table = tables[k];
+    const auto particles = select_points(anchor.particle, table, "particle", count, groups);
     if (particles.empty()) table.fail("particle", "found no particle, expected at least one");
-    const double stiffness = table.number("stiffness", NumberRule::nonnegative);
-    const double damping = table.number_or("damping", 0.0, NumberRule::nonnegative);
-    const bool has_position = table.has("position");
-    if (has_position && particles.size() > 1) {
+    if (anchor.position && particles.size() > 1) {
       table.fail("position",
                  fmt::format("found a position for {} particles, expected one only for a single particle",
                              particles.size()));
     }
-    if (particles.size() == 1) table.vec3_or("position", load3(scene.position.data(), particles[0]));
+    if (!anchor.position && particles.size() == 1) {
+      file.resolved.table("anchor", k).set("position", load3(scene.position.data(), particles[0]));
+    }
     std::size_t without_effect = 0;
     for (const int i : particles) {
-      const Vec3<double> rest = has_position ? table.vec3("position") : load3(scene.position.data(), i);
-      scene.model.anchors.push_back({i, rest, stiffness, damping});
+      const Vec3<double> rest = anchor.position.value_or(load3(scene.position.data(), i));
+      scene.model.anchors.push_back({i, rest, anchor.stiffness, anchor.damping});
       if (fixed[static_cast<std::size_t>(i)]) ++without_effect;
     }
     if (without_effect > 0) {
@@ -62,19 +64,20 @@ void read_anchors(const CheckedTable& root, const std::vector<PointGroup>& group
   }
 }
 
-void read_obstacles(const CheckedTable& root, Scene& scene) {
-  for (const CheckedTable& table : root.tables("obstacle")) {
+void add_obstacles(const std::vector<ObstacleSpec>& obstacles, const SceneFile& file, Scene& scene) {
+  const std::vector<CheckedTable> tables = file.root.tables("obstacle");
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const ObstacleSpec& given = obstacles[k];
     mechanics::Obstacle obstacle;
-    const std::string shape = table.choice("shape", {"plane", "sphere", "box"});
-    if (shape == "plane") {
-      obstacle.shape = mechanics::Plane{table.vec3("point"), read_unit_normal(table)};
-    } else if (shape == "sphere") {
-      obstacle.shape = mechanics::Sphere{table.vec3("centre"), table.positive_number("radius")};
+    if (given.shape == "plane") {
+      obstacle.shape = mechanics::Plane{given.point, unit_normal(given.normal, tables[k])};
+    } else if (given.shape == "sphere") {
+      obstacle.shape = mechanics::Sphere{given.centre, given.radius};
     } else {
-      obstacle.shape = read_box(table);
+      obstacle.shape = box_of(given, tables[k]);
     }
-    obstacle.stiffness = table.number("stiffness", NumberRule::nonnegative);
-    obstacle.damping = table.number_or("damping", 0.0, NumberRule::nonnegative);
+    obstacle.stiffness = given.stiffness;
+    obstacle.damping = given.damping;
     scene.model.obstacles.push_back(std::move(obstacle));
   }
 }

@@ -13,41 +13,35 @@ Vector flattened(const std::vector<Vec3<double>>& vectors) {
   return result;
 }
 
-void read_fixed(const CheckedTable& particles, std::size_t count, Scene& scene) {
-  if (!particles.has("fixed")) {
-    particles.record_default("fixed", std::vector<int>{});
-    return;
-  }
-  scene.model.fixed = particles.indices("fixed", count, "particle");
+void check_fixed(const std::vector<int>& fixed, std::size_t count, const CheckedTable& table) {
   std::vector<char> seen(count, 0);
-  for (std::size_t k = 0; k < scene.model.fixed.size(); ++k) {
-    char& here = seen[static_cast<std::size_t>(scene.model.fixed[k])];
+  for (std::size_t k = 0; k < fixed.size(); ++k) {
+    char& here = seen[static_cast<std::size_t>(fixed[k])];
     if (here) {
-      particles.fail(
-          "fixed", {k},
-          fmt::format("found particle {} again, expected each particle once", scene.model.fixed[k]));
+      table.fail("fixed", {k}, fmt::format("found particle {} again, expected each particle once", fixed[k]));
     }
     here = 1;
   }
 }
 
-void read_velocity(const CheckedTable& particles, std::size_t count, Scene& scene) {
-  if (!particles.has("velocity")) {
+void set_velocity(const ParticlesSpec& particles, const CheckedTable& table, TomlTree resolved,
+                  Scene& scene) {
+  const std::size_t count = particles.position.size();
+  if (!particles.velocity) {
     scene.velocity = Vector::Zero(scene.position.size());
-    particles.record_default("velocity", std::vector<Vec3<double>>(count));
+    resolved.set("velocity", std::vector<Vec3<double>>(count));
     return;
   }
-  auto velocity = particles.vectors("velocity");
+  auto velocity = *particles.velocity;
   if (velocity.size() != count) {
-    particles.fail("velocity",
-                   fmt::format("found an array of length {}, expected one vector per particle ({})",
-                               velocity.size(), count));
+    table.fail("velocity", fmt::format("found an array of length {}, expected one vector per particle ({})",
+                                       velocity.size(), count));
   }
   for (const int i : scene.model.fixed) {
     auto& v = velocity[static_cast<std::size_t>(i)];
     if (v == Vec3<double>{}) continue;
     scene.warnings.push_back(fmt::format("{}: velocity of fixed particle {} is ignored",
-                                         particles.where("velocity", {static_cast<std::size_t>(i)}), i));
+                                         table.where("velocity", {static_cast<std::size_t>(i)}), i));
     v = {};
   }
   scene.velocity = flattened(velocity);
@@ -71,34 +65,31 @@ std::vector<double> spring_lengths(const CheckedTable& table, const mechanics::S
   return lengths;
 }
 
-void read_rest_length(const CheckedTable& table, const Vector& position, mechanics::Springs& springs) {
+/// The given lengths, or the distances at the start.
+std::vector<double> rest_lengths(const SpringsSpec& spec, const CheckedTable& table, TomlTree resolved,
+                                 const Vector& position, const mechanics::Springs& springs) {
   const std::vector<double> lengths = spring_lengths(table, springs, position);
-  if (!table.has("rest_length")) {
-    for (std::size_t k = 0; k < lengths.size(); ++k) {
-      if (lengths[k] > 0.0) continue;
-      table.fail(
-          "between", {k},
-          fmt::format("found particles {} and {} at the same point, expected a rest_length for such a spring",
-                      springs.first[k], springs.second[k]));
-    }
-    springs.rest_length = lengths;
-    table.record_default("rest_length", lengths);
-    return;
+  if (spec.rest_length) return for_each_of(springs.size(), *spec.rest_length);
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    if (lengths[k] > 0.0) continue;
+    table.fail(
+        "between", {k},
+        fmt::format("found particles {} and {} at the same point, expected a rest_length for such a spring",
+                    springs.first[k], springs.second[k]));
   }
-  const auto rule =
-      springs.law == mechanics::SpringLaw::strain ? NumberRule::positive : NumberRule::nonnegative;
-  springs.rest_length = table.number_or_list("rest_length", springs.size(), "spring", rule);
+  resolved.set("rest_length", lengths);
+  return lengths;
 }
 
 /// One section [springs] or [[springs]].
-mechanics::Springs read_spring_section(const CheckedTable& table, const Scene& scene) {
+mechanics::Springs springs_of(const SpringsSpec& spec, const CheckedTable& table, TomlTree resolved,
+                              const Vector& position) {
   mechanics::Springs springs;
-  const auto between = table.index_pairs("between", scene.model.mass.size(), "particle");
-  const std::size_t count = between.size();
+  const std::size_t count = spec.between.size();
   springs.first.reserve(count);
   springs.second.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const auto [i, j] = between[k];
+    const auto [i, j] = spec.between[k];
     if (i == j) {
       table.fail(
           "between", {k},
@@ -107,25 +98,26 @@ mechanics::Springs read_spring_section(const CheckedTable& table, const Scene& s
     springs.first.push_back(i);
     springs.second.push_back(j);
   }
-  springs.law = read_spring_law(table);
-  springs.stiffness = count > 0
-                          ? table.number_or_list("stiffness", count, "spring", NumberRule::nonnegative)
-                          : table.number_or_list_or("stiffness", 0.0, 0, "spring", NumberRule::nonnegative);
-  springs.damping = table.number_or_list_or("damping", 0.0, count, "spring", NumberRule::nonnegative);
-  read_rest_length(table, scene.position, springs);
+  springs.law = spec.law;
+  springs.stiffness = for_each_of(count, spec.stiffness);
+  springs.damping = for_each_of(count, spec.damping);
+  springs.rest_length = rest_lengths(spec, table, std::move(resolved), position, springs);
   return springs;
 }
 
 /// The sections [[springs]], group after group.
-void read_spring_groups(const CheckedTable& root, Scene& scene) {
+void add_spring_groups(const std::vector<SpringGroupSpec>& groups, SceneFile& file, Scene& scene) {
+  if (groups.empty()) return;
   mechanics::Springs& springs = scene.model.springs;
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  for (const CheckedTable& table : root.tables("springs")) {
-    const mechanics::Springs group = read_spring_section(table, scene);
-    const std::string name = table.string_or("name", "");
+  const std::vector<CheckedTable> tables = file.root.tables("springs");
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    const mechanics::Springs group =
+        springs_of(groups[k].springs, tables[k], file.resolved.table("springs", k), scene.position);
+    const std::string& name = groups[k].name;
     for (const mechanics::SpringGroup& earlier : springs.groups) {
       if (!name.empty() && earlier.name == name) {
-        table.fail("name", fmt::format("found \"{}\" again, expected each name once", name));
+        tables[k].fail("name", fmt::format("found \"{}\" again, expected each name once", name));
       }
     }
     append(springs.first, group.first);
@@ -139,31 +131,24 @@ void read_spring_groups(const CheckedTable& root, Scene& scene) {
 
 }  // namespace
 
-mechanics::SpringLaw read_spring_law(const CheckedTable& table) {
-  const std::string law = table.choice_or("law", "hooke", {"hooke", "strain", "tension_only"});
-  if (law == "strain") return mechanics::SpringLaw::strain;
-  return law == "tension_only" ? mechanics::SpringLaw::tension_only : mechanics::SpringLaw::hooke;
-}
-
-void read_explicit_system(const CheckedTable& root, Scene& scene) {
-  const CheckedTable particles = root.table("particles");
-  const auto position = particles.vectors("position");
-  const std::size_t count = position.size();
-  if (count == 0) particles.fail("position", "found an empty array, expected at least one particle");
+void build_explicit_system(const SceneSpec& spec, SceneFile& file, Scene& scene) {
+  const ParticlesSpec& particles = *spec.particles;
+  const CheckedTable table = file.root.table("particles");
+  const std::size_t count = particles.position.size();
   if (static_cast<double>(count) > max_particle_count) {
-    particles.fail("position", fmt::format("found {} particles, expected at most {:.0f}", count,
-                                           std::floor(max_particle_count)));
+    table.fail("position", fmt::format("found {} particles, expected at most {:.0f}", count,
+                                       std::floor(max_particle_count)));
   }
-  scene.position = flattened(position);
-  scene.model.mass = particles.number_or_list("mass", count, "particle", NumberRule::positive);
-  read_fixed(particles, count, scene);
-  read_velocity(particles, count, scene);
-  if (!root.has("springs")) return;
-  if (root.is_table("springs")) {
-    scene.model.springs = read_spring_section(root.table("springs"), scene);
-  } else {
-    read_spring_groups(root, scene);
+  scene.position = flattened(particles.position);
+  scene.model.mass = for_each_of(count, particles.mass);
+  check_fixed(particles.fixed, count, table);
+  scene.model.fixed = particles.fixed;
+  set_velocity(particles, table, file.resolved.table("particles"), scene);
+  if (spec.springs) {
+    scene.model.springs =
+        springs_of(*spec.springs, file.root.table("springs"), file.resolved.table("springs"), scene.position);
   }
+  add_spring_groups(spec.spring_groups, file, scene);
 }
 
 }  // namespace fw::scene

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "mechanics/elements/spring_law.hpp"
 #include "scene/scene.hpp"
-#include "text/checked_table.hpp"
+#include "scene/scene_file.hpp"
+#include "scene/scene_spec.hpp"
 
 namespace fw::scene {
 
@@ -11,10 +11,8 @@ inline constexpr double max_particle_count = 2147483647.0 / 6.0;
 /// Springs are counted with 32 bits.
 inline constexpr double max_spring_count = 2147483647.0;
 
-/// The `law` of [springs] or [generate], "hooke" by default.
-mechanics::SpringLaw read_spring_law(const CheckedTable& table);
-
-/// Reads [particles] and, if there are any, [springs] or the sections [[springs]].
-void read_explicit_system(const CheckedTable& root, Scene& scene);
+/// Builds the particles of the section [particles] and the springs of [springs] or the sections [[springs]].
+/// InputError where their values do not fit each other.
+void build_explicit_system(const SceneSpec& spec, SceneFile& file, Scene& scene);
 
 }  // namespace fw::scene

@@ -73,12 +73,15 @@ std::vector<PointGroup> box_groups(const Lattice& lattice) {
   return groups;
 }
 
-std::vector<int> read_points(const CheckedTable& table, std::string_view key, std::size_t particle_count,
-                             const std::vector<PointGroup>& groups) {
-  std::vector<std::string> names;
-  for (const PointGroup& group : groups) names.push_back(group.name);
-  const auto entries = table.indices_or_names(key, particle_count, "particle", names);
+std::vector<PointGroup> groups_of(const std::string& kind, const Lattice& lattice) {
+  if (kind == "chain") return line_groups(lattice);
+  if (kind == "cloth") return sheet_groups(lattice);
+  if (kind == "grid" || kind == "block") return box_groups(lattice);
+  return common_groups();
+}
 
+std::vector<int> select_points(const PointList& entries, const CheckedTable& table, std::string_view key,
+                               std::size_t particle_count, const std::vector<PointGroup>& groups) {
   std::vector<char> selected(particle_count, 0), listed(particle_count, 0);
   std::vector<std::string> used;
   for (std::size_t e = 0; e < entries.size(); ++e) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scene/lattice.hpp"
-#include "text/checked_table.hpp"
+#include "text/toml_tree.hpp"
 
 namespace fw::scene {
 
@@ -25,9 +25,12 @@ std::vector<PointGroup> sheet_groups(const Lattice& lattice);
 /// The faces and corners of a box: left/right along x, front/back along y, bottom/top along z.
 std::vector<PointGroup> box_groups(const Lattice& lattice);
 
-/// Reads indices and names of groups: the union, in ascending order. InputError if an index or name is given
-/// twice.
-std::vector<int> read_points(const CheckedTable& table, std::string_view key, std::size_t particle_count,
-                             const std::vector<PointGroup>& groups);
+/// The groups of a lattice of this kind of [generate]; of another name those that every scene has.
+std::vector<PointGroup> groups_of(const std::string& kind, const Lattice& lattice);
+
+/// The particles that indices and names of groups say, in ascending order. InputError, which names the entry of
+/// `key` in `table`, if an index or name is given twice.
+std::vector<int> select_points(const PointList& entries, const CheckedTable& table, std::string_view key,
+                               std::size_t particle_count, const std::vector<PointGroup>& groups);
 
 }  // namespace fw::scene

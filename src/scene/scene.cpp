@@ -3,37 +3,46 @@
 #include "scene/attachments.hpp"
 #include "scene/explicit_system.hpp"
 #include "scene/generated_system.hpp"
+#include "settings/description.hpp"
+#include "settings/reader.hpp"
 
 namespace fw::scene {
 namespace {
 
-Scene build_scene(const CheckedTable& root) {
-  Scene scene;
-  scene.title = root.string_or("title", "");
-  const CheckedTable world = root.table_or_empty("world");
-  scene.model.gravity = world.vec3_or("gravity", {});
-  scene.model.drag = world.number_or("drag", 0.0, NumberRule::nonnegative);
-
-  const bool generated = root.has("generate");
+/// The sections say in what way the scene is given, which is told before anything else.
+void check_sections(const CheckedTable& root) {
+  const bool is_generated = root.has("generate");
   for (const char* section : {"particles", "springs"}) {
-    if (root.has(section) && generated) {
+    if (root.has(section) && is_generated) {
       root.fail(section, std::string("found [") + section + "] beside [generate], expected one of them");
     }
   }
   if (root.has("constraint")) root.fail("constraint", "constraints are not available in this version");
+  if (is_generated || root.has("particles")) return;
+  const settings::SectionDescription description = settings::describe<SceneSpec>({.name = "scene"});
+  std::vector<std::string> known;
+  for (const settings::SettingDescription& setting : description.settings) known.push_back(setting.info.name);
+  for (const settings::SectionDescription& section : description.sections) known.push_back(section.info.name);
+  root.fail_missing("particles", "a section [particles] or [generate]", known);
+}
 
-  std::vector<PointGroup> groups;
-  if (generated) {
-    groups = read_generated_system(root.table("generate"), scene);
+Scene build_scene(const CheckedTable& root) {
+  check_sections(root);
+  SceneSpec spec;
+  SceneFile file{root, settings::read(root, spec)};
+  Scene scene;
+  scene.title = spec.title;
+  scene.model.gravity = spec.world.gravity;
+  scene.model.drag = spec.world.drag;
+  std::vector<PointGroup> groups = common_groups();
+  if (spec.generate) {
+    groups = build_generated_system(*spec.generate, file, scene);
   } else {
-    if (!root.has("particles")) root.fail_missing("particles", "a section [particles] or [generate]");
-    read_explicit_system(root, scene);
-    groups = common_groups();
+    build_explicit_system(spec, file, scene);
   }
-  read_anchors(root, groups, scene);
-  read_obstacles(root, scene);
-  root.finish();
-  scene.resolved_toml = root.to_toml_text();
+  add_anchors(spec.anchors, groups, file, scene);
+  add_obstacles(spec.obstacles, file, scene);
+  scene.resolved_toml = file.resolved.text();
   return scene;
 }
 

@@ -6,14 +6,32 @@
 
 namespace fw::scene {
 
+using mechanics::SpringLaw;
 using settings::Archive;
+using settings::choice;
 using settings::setting;
 
 namespace {
 
 constexpr std::int64_t largest_count = 2147483647;
 
-const std::vector<std::string> laws = {"hooke", "strain", "tension_only"};
+settings::Setting law_setting(SpringLaw& law) {
+  return choice("law", law,
+                {{"hooke", SpringLaw::hooke},
+                 {"strain", SpringLaw::strain},
+                 {"tension_only", SpringLaw::tension_only}});
+}
+
+/// Rest lengths or their factor: > 0 with the law strain, which divides by them.
+settings::Setting& with_range(const Archive& a, SpringLaw law, settings::Setting& rest_length) {
+  return law == SpringLaw::strain && !a.is_description() ? rest_length.positive() : rest_length.nonnegative();
+}
+
+std::vector<std::string> names_of(const std::vector<PointGroup>& groups) {
+  std::vector<std::string> names;
+  for (const PointGroup& group : groups) names.push_back(group.name);
+  return names;
+}
 
 /// The names of groups of points that any kind of scene has.
 std::vector<std::string> all_point_names() {
@@ -27,7 +45,21 @@ std::vector<std::string> all_point_names() {
   return names;
 }
 
+/// The names of groups of points in a scene with this kind of [generate], or in one with [particles].
+std::vector<std::string> point_names(const std::string& kind) {
+  return names_of(groups_of(kind, Lattice{}));
+}
+
 }  // namespace
+
+std::size_t particle_count(const GenerateSpec& generate) {
+  double points = static_cast<double>(generate.count);
+  if (generate.kind != "chain") {
+    points = 1.0;
+    for (const std::int64_t count : generate.counts) points *= static_cast<double>(count);
+  }
+  return static_cast<std::size_t>(std::min(points, 9e15));  // more are refused anyway
+}
 
 void declare(Archive& a, WorldSpec& world) {
   a(setting("gravity", world.gravity).unit("m/s²").doc("acceleration"));
@@ -57,24 +89,29 @@ void declare(Archive& a, SpringsSpec& springs) {
         .into("particle", springs.particles)
         .doc("may be empty; the same pair twice means two parallel springs"));
   const std::size_t count = springs.between.size();
-  a(setting("stiffness", springs.stiffness)
-        .unit("N/m")
-        .required()
-        .nonnegative()
-        .or_one_per("spring", count)
-        .doc("k_s; in newtons with the law `strain`"));
+  auto stiffness = setting("stiffness", springs.stiffness)
+                       .unit("N/m")
+                       .nonnegative()
+                       .or_one_per("spring", count)
+                       .doc("k_s; in newtons with the law `strain`");
+  if (count > 0 || a.is_description()) {
+    stiffness.required();
+  } else {
+    springs.stiffness = {0.0};
+  }
+  a(stiffness);
   a(setting("damping", springs.damping)
         .unit("N·s/m")
         .nonnegative()
         .or_one_per("spring", count)
         .doc("k_d, along the spring"));
-  a(setting("rest_length", springs.rest_length)
-        .unit("m")
-        .nonnegative()
-        .or_one_per("spring", count)
-        .default_text("distance at the start")
-        .doc("l₀; > 0 with `strain`; has to be given between coincident points"));
-  a(setting("law", springs.law).choices(laws).doc("see below, for all springs"));
+  a(law_setting(springs.law).doc("see below, for all springs"));
+  auto rest_length = setting("rest_length", springs.rest_length)
+                         .unit("m")
+                         .or_one_per("spring", count)
+                         .default_text("distance at the start")
+                         .doc("l₀; > 0 with `strain`; has to be given between coincident points");
+  a(with_range(a, springs.law, rest_length));
 }
 
 void declare(Archive& a, SpringGroupSpec& group) {
@@ -90,15 +127,19 @@ void declare(Archive& a, GenerateSpec& g) {
           .doc("distance of neighbouring points along every axis"));
   };
   const auto families = [&](const std::vector<std::string>& names, const std::vector<std::string>& chosen) {
-    if (a.is_description()) g.springs = chosen;
+    if (a.is_description() || !g.springs) g.springs = chosen;
     a(setting("springs", g.springs).choices(names).doc("the families of springs; may be empty"));
-    a(setting("stiffness", g.stiffness)
-          .unit("N/m")
-          .required()
-          .nonnegative()
-          .or_by_name(names)
-          .doc("as in `[springs]`"));
-    a(setting("damping", g.damping).unit("N·s/m").nonnegative().or_by_name(names).doc("as in `[springs]`"));
+    const bool has_springs = a.is_description() || !g.springs->empty();
+    const std::vector<std::string>& by_name = a.is_description() || !has_springs ? names : *g.springs;
+    auto stiffness = setting("stiffness", g.stiffness)
+                         .unit("N/m")
+                         .nonnegative()
+                         .or_by_name(by_name)
+                         .doc("as in `[springs]`");
+    if (has_springs) stiffness.required();
+    a(stiffness);
+    if (has_springs && !g.damping) g.damping = NumberTable{{"", 0.0}};
+    a(setting("damping", g.damping).unit("N·s/m").nonnegative().or_by_name(by_name).doc("as in `[springs]`"));
   };
   const auto lattice = [&](std::size_t axes) {
     a(setting("counts", g.counts)
@@ -141,27 +182,32 @@ void declare(Archive& a, GenerateSpec& g) {
            lattice(3);
            families({"structural"}, {"structural"});
          }}});
-  a.one_of(
-      {{"mass",
-        [&] {
-          a(setting("mass", g.mass).unit("kg").positive().or_one_per("particle", 0).doc("of every particle"));
-        }},
-       {"total_mass",
-        [&] { a(setting("total_mass", g.total_mass).unit("kg").positive().doc("of the whole")); }},
-       {"density", [&] {
-          a(setting("density", g.density)
-                .positive()
-                .doc("[kg/m] for a chain, [kg/m²] for a cloth, [kg/m³] for grid and block"));
-        }}});
+  const std::size_t count = particle_count(g);
+  a.one_of({{"mass",
+             [&] {
+               a(setting("mass", g.mass)
+                     .unit("kg")
+                     .positive()
+                     .or_one_per("particle", count)
+                     .doc("of every particle"));
+             }},
+            {"total_mass",
+             [&] { a(setting("total_mass", g.total_mass).unit("kg").positive().doc("of the whole")); }},
+            {"density", [&] {
+               a(setting("density", g.density)
+                     .positive()
+                     .doc("[kg/m] for a chain, [kg/m²] for a cloth, [kg/m³] for grid and block"));
+             }}});
   a(setting("origin", g.origin).unit("m").doc("place of the first point"));
-  a(setting("rest_length_factor", g.rest_length_factor)
-        .unit("1")
-        .nonnegative()
-        .doc("rest length = factor × distance at the start; < 1 is taut, > 1 slack; > 0 with `strain`"));
-  a(setting("law", g.law).choices(laws).doc("as in `[springs]`"));
+  a(law_setting(g.law).doc("as in `[springs]`"));
+  auto factor =
+      setting("rest_length_factor", g.rest_length_factor)
+          .unit("1")
+          .doc("rest length = factor × distance at the start; < 1 is taut, > 1 slack; > 0 with `strain`");
+  a(with_range(a, g.law, factor));
   a(setting("pinned", g.pinned)
-        .choices(all_point_names())
-        .into("particle", 0)
+        .choices(a.is_description() ? all_point_names() : point_names(g.kind))
+        .into("particle", count)
         .doc("particles that never move"));
   a(setting("velocity", g.velocity).unit("m/s").doc("of all particles that are not pinned"));
 }
@@ -169,8 +215,8 @@ void declare(Archive& a, GenerateSpec& g) {
 void declare(Archive& a, AnchorSpec& anchor) {
   a(setting("particle", anchor.particle)
         .required()
-        .choices(all_point_names())
-        .into("particle", 0)
+        .choices(a.is_description() ? all_point_names() : anchor.point_names)
+        .into("particle", anchor.particles)
         .doc("names as for `pinned`; a scene with `[particles]` has the name `all` only"));
   a(setting("stiffness", anchor.stiffness).unit("N/m").required().nonnegative().doc("k"));
   a(setting("damping", anchor.damping).unit("N·s/m").nonnegative().doc("c"));
@@ -207,9 +253,15 @@ void declare(Archive& a, SceneSpec& scene) {
   a.optional_section({"generate", "A standard system, in place of [particles] and [springs]."},
                      scene.generate);
   a.optional_section({"particles", "All particles one by one."}, scene.particles);
-  a.optional_section({"springs", "Springs between them; may be absent: free particles."}, scene.springs);
-  a.sections({"springs", "Groups of springs, each with a law of its own."}, scene.spring_groups);
-  a.sections({"anchor", "Force −k (x − x₀) − c v on particles."}, scene.anchors);
+  SpringsSpec springs;
+  springs.particles = scene.particles ? scene.particles->position.size() : 0;
+  a.section_or_sections({"springs", "Springs between them; may be absent: free particles."}, scene.springs,
+                        springs, {"springs", "Groups of springs, each with a law of its own."},
+                        scene.spring_groups, SpringGroupSpec{springs, ""});
+  AnchorSpec anchor;
+  anchor.particles = scene.generate ? particle_count(*scene.generate) : springs.particles;
+  anchor.point_names = point_names(scene.generate ? scene.generate->kind : "");
+  a.sections({"anchor", "Force −k (x − x₀) − c v on particles."}, scene.anchors, anchor);
   a.sections({"obstacle",
               "A solid that pushes particles out: force max(k δ − c v·n, 0) n at depth δ with outward "
               "normal n."},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mechanics/elements/spring_law.hpp"
 #include "settings/archive.hpp"
 
 namespace fw::scene {
@@ -28,10 +29,10 @@ void declare(settings::Archive& a, ParticlesSpec& particles);
 struct SpringsSpec {
   std::size_t particles = 0;  ///< that there are
   IndexPairs between;
-  std::vector<double> stiffness;                   ///< [N/m]; [N] with the law strain
-  std::vector<double> damping = {0.0};             ///< [N·s/m]
-  std::optional<std::vector<double>> rest_length;  ///< [m]
-  std::string law = "hooke";
+  std::vector<double> stiffness;        ///< [N/m]; [N] with the law strain; one or one per spring
+  std::vector<double> damping = {0.0};  ///< [N·s/m], one or one per spring
+  mechanics::SpringLaw law = mechanics::SpringLaw::hooke;
+  std::optional<std::vector<double>> rest_length;  ///< [m], one or one per spring
 };
 void declare(settings::Archive& a, SpringsSpec& springs);
 
@@ -53,19 +54,25 @@ struct GenerateSpec {
   Vec3<double> origin{};
   Vec3<double> direction{1.0, 0.0, 0.0};
   std::string plane = "xy";
-  std::optional<std::vector<double>> mass;
+  std::optional<std::vector<double>> mass;  ///< [kg], one or one per particle
   std::optional<double> total_mass, density;
-  std::vector<std::string> springs;
-  NumberTable stiffness, damping = {{"", 0.0}};
+  std::optional<std::vector<std::string>> springs;  ///< families; has a value once it has been read
+  std::optional<NumberTable> stiffness,
+      damping;  ///< by family, "" for all; have a value if there are families
+  mechanics::SpringLaw law = mechanics::SpringLaw::hooke;
   double rest_length_factor = 1.0;
-  std::string law = "hooke";
   PointList pinned;
   Vec3<double> velocity{};
 };
 void declare(settings::Archive& a, GenerateSpec& generate);
 
+/// The number of points of the lattice that `generate` describes.
+std::size_t particle_count(const GenerateSpec& generate);
+
 /// [[anchor]]
 struct AnchorSpec {
+  std::size_t particles = 0;             ///< that there are
+  std::vector<std::string> point_names;  ///< that groups of them have
   PointList particle;
   double stiffness = 0.0, damping = 0.0;
   std::optional<Vec3<double>> position;

@@ -48,21 +48,31 @@ class Archive {
     visit_section(info, [&] { declare(*this, s); });
   }
 
-  /// [name] that a file may leave out, which is something else than a section of defaults.
+  /// [name] that a file may leave out, which is something else than a section of defaults. `fresh`: what its
+  /// settings are before they are read.
   template <class S>
-  void optional_section(const SectionInfo& info, std::optional<S>& s) {
+  void optional_section(const SectionInfo& info, std::optional<S>& s, const S& fresh = {}) {
     if (!has_section(info, s.has_value())) return;
-    if (!s) s.emplace();
+    if (!s) s = fresh;
     visit_section(info, [&] { declare(*this, *s); });
   }
 
   /// [[name]], any number of them.
   template <class S>
-  void sections(const SectionInfo& info, std::vector<S>& list) {
-    list.resize(section_count(info, list.size()));
+  void sections(const SectionInfo& info, std::vector<S>& list, const S& fresh = {}) {
+    list.resize(section_count(info, list.size()), fresh);
     for (std::size_t k = 0; k < list.size(); ++k) {
       visit_section_of_list(info, k, [&] { declare(*this, list[k]); });
     }
+  }
+
+  /// [name] or any number of [[name]].
+  template <class S, class Entry>
+  void section_or_sections(const SectionInfo& one, std::optional<S>& s, const S& fresh,
+                           const SectionInfo& many, std::vector<Entry>& list, const Entry& fresh_entry) {
+    const std::optional<bool> is_list = gives_list(one.name);
+    if (!is_list.value_or(false)) optional_section(one, s, fresh);
+    if (is_list.value_or(true)) sections(many, list, fresh_entry);
   }
 
   /// [name] that holds a whole study of another kind, which its own declaration checks.
@@ -93,6 +103,11 @@ class Archive {
   virtual void visit_quick(const std::function<void()>& declare_more) = 0;
   virtual bool has_section(const SectionInfo& info, bool has_value) = 0;
   virtual std::size_t section_count(const SectionInfo& info, std::size_t have) = 0;
+  /// Whether a file gives [[name]] and not [name]; nothing where there is no file.
+  virtual std::optional<bool> gives_list(const std::string& name) const {
+    (void)name;
+    return std::nullopt;
+  }
 };
 
 }  // namespace fw::settings

@@ -13,7 +13,9 @@ namespace {
 /// What a list has to have, "at least one entry"; nothing where its length is right.
 std::string wrong_length(const SettingInfo& info, std::size_t count) {
   if (count >= info.fewest && count <= info.most) return "";
-  const std::string found = count == 0 ? "an empty list" : fmt::format("{} entries", count);
+  const std::string found = count == 0   ? "an empty list"
+                            : count == 1 ? "one entry"
+                                         : fmt::format("{} entries", count);
   if (info.fewest == info.most) return fmt::format("found {}, expected {}", found, info.fewest);
   if (count < info.fewest) {
     return fmt::format("found {}, expected at least {}", found,
@@ -49,6 +51,7 @@ TomlValue value_of(const CheckedTable& table, const SettingInfo& info) {
     case Type::number:
       return table.number(info.name, info.range);
     case Type::integer:
+      if (!info.word.empty() && table.is_string(info.name)) return table.choice(info.name, {info.word});
       return table.integer(info.name, info.lowest, info.highest);
     case Type::boolean:
       return table.boolean(info.name);
@@ -90,10 +93,11 @@ TomlValue value_of(const CheckedTable& table, const SettingInfo& info) {
   throw std::logic_error("a setting of unknown type");
 }
 
-std::string quoted_names(const std::vector<Form>& forms) {
+/// "a" and "b" of the names of forms.
+std::string quoted_names(const std::vector<const Form*>& forms) {
   std::string text;
   for (std::size_t k = 0; k < forms.size(); ++k) {
-    text += (k == 0 ? "\"" : k + 1 == forms.size() ? " and \"" : ", \"") + forms[k].name + "\"";
+    text += (k == 0 ? "\"" : k + 1 == forms.size() ? " and \"" : ", \"") + forms[k]->name + "\"";
   }
   return text;
 }
@@ -107,6 +111,7 @@ void Reader::read(const SettingInfo& info, const std::function<void(const TomlVa
                   const std::optional<TomlValue>& default_value) {
   Level& level = levels_.back();
   level.known.push_back(info.name);
+  if (level.missing && !info.what.empty()) return;  // what is missing may tell the count
   if (level.table.has(info.name)) {
     assign(value_of(level.table, info));
     level.resolved.copy(info.name, level.table);
@@ -157,8 +162,13 @@ void Reader::visit_free_section(const SectionInfo& info) {
 
 void Reader::visit_one_of(const std::vector<Form>& forms) {
   const CheckedTable table = levels_.back().table;
-  std::vector<const Form*> given;
+  if (levels_.back().missing) {  // of which the section tells
+    for (const Form& form : forms) levels_.back().known.push_back(form.name);
+    return;
+  }
+  std::vector<const Form*> given, all;
   for (const Form& form : forms) {
+    all.push_back(&form);
     if (table.has(form.name)) given.push_back(&form);
   }
   if (given.empty()) {
@@ -168,13 +178,15 @@ void Reader::visit_one_of(const std::vector<Form>& forms) {
     if (const auto unknown = table.unknown_key(known); unknown && unknown->has_suggestion) {
       throw InputError(unknown->message);
     }
+    throw InputError(
+        fmt::format("{}: found none of {}, expected exactly one", table.where(), quoted_names(all)));
   }
-  if (given.size() != 1) {
-    throw InputError(fmt::format("{}: found {} of {}, expected exactly one", table.where(),
-                                 given.empty()       ? "none"
-                                 : given.size() == 2 ? "both"
-                                                     : "several",
-                                 quoted_names(forms)));
+  if (given.size() > 1) {
+    const std::string place = table.where(given[1]->name);
+    throw InputError(given.size() == 2 && forms.size() == 2
+                         ? fmt::format("{}: found both of {}, expected exactly one", place, quoted_names(all))
+                         : fmt::format("{}: found {}, expected exactly one of {}", place, quoted_names(given),
+                                       quoted_names(all)));
   }
   given.front()->declare();
 }
@@ -216,10 +228,18 @@ std::size_t Reader::section_count(const SectionInfo& info, std::size_t) {
   Level& level = levels_.back();
   level.known.push_back(info.name);
   const std::size_t count = level.table.tables(info.name).size();
-  if (count == 0 && level.table.has(info.name))
-    level.table.fail(info.name, "found an empty list of sections");
+  if (count == 0 && level.table.has(info.name)) {
+    if (info.is_required)
+      level.table.fail(info.name, "found an empty list of sections, expected at least one");
+    level.resolved.copy(info.name, level.table);
+  }
   if (count == 0 && info.is_required && level.missing_list.empty()) level.missing_list = info.name;
   return count;
+}
+
+std::optional<bool> Reader::gives_list(const std::string& name) const {
+  const CheckedTable& table = levels_.back().table;
+  return table.has(name) && table.is_list(name);
 }
 
 /// Ends the section on top: what is missing is told first, as all keys are known now.

@@ -44,6 +44,7 @@ class Reader final : public Archive {
   void visit_quick(const std::function<void()>& declare_more) override;
   bool has_section(const SectionInfo& info, bool has_value) override;
   std::size_t section_count(const SectionInfo& info, std::size_t have) override;
+  std::optional<bool> gives_list(const std::string& name) const override;
 
   void read(const SettingInfo& info, const std::function<void(const TomlValue&)>& assign,
             const std::optional<TomlValue>& default_value);

@@ -22,7 +22,7 @@ std::string expectation(const SettingInfo& info) {
     case Type::number:
       return "a finite number" + info.range.text();
     case Type::integer:
-      return "an integer" + integers;
+      return "an integer" + integers + (info.word.empty() ? "" : fmt::format(", or \"{}\"", info.word));
     case Type::boolean:
       return "true or false";
     case Type::string:
@@ -65,6 +65,11 @@ Setting& Setting::above(double bound) {
 
 Setting& Setting::or_one_per(std::string what, std::size_t count) {
   info_.type = Type::number_or_list;
+  get_ = [get = get_]() -> std::optional<TomlValue> {
+    std::optional<TomlValue> held = get();
+    const auto* numbers = held ? std::get_if<std::vector<double>>(&*held) : nullptr;
+    return numbers != nullptr && numbers->size() == 1 ? TomlValue(numbers->front()) : held;
+  };
   return into(std::move(what), count);
 }
 
@@ -82,6 +87,19 @@ Setting& Setting::into(std::string what, std::size_t count) {
 Setting& Setting::integers(std::int64_t lowest, std::int64_t highest) {
   info_.lowest = lowest;
   info_.highest = highest;
+  return *this;
+}
+
+Setting& Setting::or_word(std::string word, std::int64_t value) {
+  info_.word = std::move(word);
+  get_ = [get = get_, word = info_.word, value]() -> std::optional<TomlValue> {
+    std::optional<TomlValue> held = get();
+    if (held && std::get<std::int64_t>(*held) == value) return TomlValue(word);
+    return held;
+  };
+  set_ = [set = set_, value](const TomlValue& given) {
+    set(std::holds_alternative<std::string>(given) ? TomlValue(value) : given);
+  };
   return *this;
 }
 

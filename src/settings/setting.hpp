@@ -66,6 +66,7 @@ struct SettingInfo {
   bool selects_cases = false;  ///< says which cases there are, and changes nothing of one
   std::size_t count = 0;       ///< of the things that numbers belong to or indices count
   std::string what{};          ///< they are: "particle"
+  std::string word{};          ///< that may stand in the place of an integer
   std::string names_of{};      ///< what the strings name, such as "methods", for completion in editors
 };
 
@@ -95,9 +96,13 @@ class Setting {
   /// Numbers from `lowest` to `highest`, both included.
   Setting& between(double lowest, double highest) { return info_.range = {lowest, highest}, *this; }
   Setting& at_least_number(double lowest) { return info_.range.lowest = lowest, *this; }
+  /// Numbers ≤ `bound`, beside what else they have to satisfy.
+  Setting& up_to(double bound) { return info_.range.highest = bound, *this; }
   /// Integers from `lowest` to `highest`, both included.
   Setting& integers(std::int64_t lowest, std::int64_t highest);
   Setting& at_least(std::int64_t lowest) { return info_.lowest = lowest, *this; }
+  /// An integer, or a word for this value of the variable: `"auto"` for 0.
+  Setting& or_word(std::string word, std::int64_t value);
   Setting& choices(std::vector<std::string> names) { return info_.choices = std::move(names), *this; }
   Setting& names_of(std::string what) { return info_.names_of = std::move(what), *this; }
   /// Entries of a list.
@@ -105,7 +110,7 @@ class Setting {
   Setting& not_empty() { return info_.fewest = 1, *this; }
   /// A list of numbers that may also be { from, to, count }.
   Setting& or_sequence() { return info_.type = Type::sequence, *this; }
-  /// One number for all of `count` things, or a list with one for each.
+  /// One number for all of `count` things, or a list with one for each; so many numbers the variable gets.
   Setting& or_one_per(std::string what, std::size_t count);
   /// One number for all, or a table with numbers for some of these names. The variable has it under "".
   Setting& or_by_name(std::vector<std::string> names);

@@ -56,7 +56,8 @@ std::string type_of(const SettingInfo& info) {
     case Type::number:
       return "number" + range_of(info.range);
     case Type::integer:
-      return "integer" + integers_of(info);
+      return "integer" + integers_of(info) +
+             (info.word.empty() ? "" : fmt::format(", or `\"{}\"`", info.word));
     case Type::boolean:
       return "boolean";
     case Type::string:

@@ -173,14 +173,11 @@ std::string probe(const std::string& call, const Catalog& catalog) {
 /// Throws InputError that names the entry where a call is not one of a method.
 void check_call(const CheckedTable& spec, const std::string& key, std::size_t index, const std::string& call,
                 const Catalog& catalog) {
-  std::string message;
   try {
-    catalog.method(call);
-    if (call.find("petsc=") != std::string::npos) message = probe(call, catalog);
+    check_method(call, catalog);
   } catch (const InputError& error) {
-    message = error.what();
+    spec.fail(key, {index}, error.what());
   }
-  if (!message.empty()) spec.fail(key, {index}, message);
 }
 
 /// Whether `text` is `pattern`, in which each * stands for any letters.
@@ -211,6 +208,12 @@ std::vector<std::string> expand(const CheckedTable& spec, const std::string& key
 }
 
 }  // namespace
+
+void check_method(const std::string& call, const Catalog& catalog) {
+  catalog.method(call);
+  if (call.find("petsc=") == std::string::npos) return;
+  if (const std::string message = probe(call, catalog); !message.empty()) throw InputError(message);
+}
 
 void declare(settings::Archive& a, ProblemSpec& problem) {
   using settings::setting;

@@ -67,6 +67,10 @@ struct ProblemFamily {
 std::vector<ProblemFamily> make_families(const std::vector<FamilySpec>& specs, const StudyInput& input,
                                          std::vector<std::string>& warnings);
 
+/// Throws InputError where a call is not one of a method; options in PETSc's notation are tried out in a process
+/// of their own.
+void check_method(const std::string& call, const Catalog& catalog);
+
 /// The key `methods`: calls of methods, at least one.
 settings::Setting methods_setting(std::vector<std::string>& methods);
 

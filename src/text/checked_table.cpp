@@ -78,20 +78,25 @@ const std::string& CheckedTable::path() const {
 std::vector<std::string> CheckedTable::keys() const {
   std::vector<std::string> result;
   for (const auto& [key, node] : *section_->table) {
-    if (!section_->document->defaults.contains(&node)) result.emplace_back(key.str());
+    result.emplace_back(key.str());
   }
   return result;
 }
 
 bool CheckedTable::has(std::string_view key) const {
-  auto& candidates = section_->document->asked[section_->table];
-  if (std::find(candidates.begin(), candidates.end(), key) == candidates.end()) candidates.emplace_back(key);
-  const toml::node* node = section_->table->get(key);
-  return node && !section_->document->defaults.contains(node);
+  return section_->table->contains(key);
 }
 
 bool CheckedTable::is_table(std::string_view key) const {
   return has(key) && section_->table->get(key)->is_table();
+}
+
+bool CheckedTable::is_list(std::string_view key) const {
+  return has(key) && section_->table->get(key)->is_array();
+}
+
+bool CheckedTable::is_string(std::string_view key) const {
+  return has(key) && section_->table->get(key)->is_string();
 }
 
 bool CheckedTable::holds_strings(std::string_view key) const {
@@ -103,21 +108,8 @@ double CheckedTable::number(std::string_view key, const NumberRange& range) cons
   return section_->number_of(section_->require(key, "a number"), {key}, range);
 }
 
-double CheckedTable::number_or(std::string_view key, double value, const NumberRange& range) const {
-  if (const auto* node = section_->find(key)) return section_->number_of(*node, {key}, range);
-  section_->add_default(key, value);
-  return value;
-}
-
 std::int64_t CheckedTable::integer(std::string_view key, std::int64_t lowest, std::int64_t highest) const {
   return section_->integer_of(section_->require(key, "an integer"), {key}, lowest, highest);
-}
-
-std::int64_t CheckedTable::integer_or(std::string_view key, std::int64_t value, std::int64_t lowest,
-                                      std::int64_t highest) const {
-  if (const auto* node = section_->find(key)) return section_->integer_of(*node, {key}, lowest, highest);
-  section_->add_default(key, value);
-  return value;
 }
 
 bool CheckedTable::boolean(std::string_view key) const {
@@ -126,20 +118,8 @@ bool CheckedTable::boolean(std::string_view key) const {
   return node.as_boolean()->get();
 }
 
-bool CheckedTable::boolean_or(std::string_view key, bool value) const {
-  if (section_->find(key)) return boolean(key);
-  section_->add_default(key, value);
-  return value;
-}
-
 std::string CheckedTable::string(std::string_view key) const {
   return section_->string_of(section_->require(key, "a string"), {key});
-}
-
-std::string CheckedTable::string_or(std::string_view key, const std::string& value) const {
-  if (const auto* node = section_->find(key)) return section_->string_of(*node, {key});
-  section_->add_default(key, value);
-  return value;
 }
 
 std::string CheckedTable::choice(std::string_view key, const std::vector<std::string>& allowed) const {
@@ -148,21 +128,8 @@ std::string CheckedTable::choice(std::string_view key, const std::vector<std::st
   return section_->choice_of(section_->require(key, expected), {key}, allowed);
 }
 
-std::string CheckedTable::choice_or(std::string_view key, const std::string& value,
-                                    const std::vector<std::string>& allowed) const {
-  if (const auto* node = section_->find(key)) return section_->choice_of(*node, {key}, allowed);
-  section_->add_default(key, value);
-  return value;
-}
-
 Vec3<double> CheckedTable::vec3(std::string_view key) const {
   return section_->vec3_of(section_->require(key, "an array of 3 numbers [x, y, z]"), {key});
-}
-
-Vec3<double> CheckedTable::vec3_or(std::string_view key, const Vec3<double>& value) const {
-  if (const auto* node = section_->find(key)) return section_->vec3_of(*node, {key});
-  section_->add_default(key, toml::array{value.x, value.y, value.z});
-  return value;
 }
 
 CheckedTable CheckedTable::table(std::string_view key) const {
@@ -172,15 +139,10 @@ CheckedTable CheckedTable::table(std::string_view key) const {
   return CheckedTable(std::make_shared<Section>(Section{section_->document, node.as_table(), child}));
 }
 
-CheckedTable CheckedTable::table_or_empty(std::string_view key) const {
-  if (!section_->find(key)) section_->add_default(key, toml::table{});
-  return table(key);
-}
-
 std::vector<CheckedTable> CheckedTable::tables(std::string_view key) const {
   const std::string child = (path().empty() ? "" : path() + ".") + std::string(key);
   std::vector<CheckedTable> result;
-  auto* node = section_->find(key);
+  auto* node = section_->table->get(key);
   if (!node) return result;
   auto* array = node->as_array();
   if (!array || (!array->empty() && !array->is_array_of_tables())) {
@@ -241,13 +203,6 @@ CheckedTable CheckedTable::empty_table(std::string_view key) const {
   return CheckedTable(std::move(section));
 }
 
-void CheckedTable::finish() const {
-  toml::source_index line = 0;
-  std::string message;
-  section_->find_unknown(line, message);
-  if (!message.empty()) throw InputError(fmt::format("{}:{}: {}", source_name(), line, message));
-}
-
 std::string CheckedTable::where(std::string_view key, std::initializer_list<std::size_t> indices) const {
   EntryPlace place{key};
   const toml::node* node = key.empty() ? nullptr : section_->table->get(key);
@@ -266,14 +221,6 @@ void CheckedTable::fail(std::string_view key, const std::string& message) const 
 void CheckedTable::fail(std::string_view key, std::initializer_list<std::size_t> indices,
                         const std::string& message) const {
   throw InputError(where(key, indices) + ": " + message);
-}
-
-void CheckedTable::fail_missing(std::string_view key, const std::string& expected) const {
-  section_->fail_missing(key, expected, section_->document->asked[section_->table]);
-}
-
-std::string CheckedTable::to_toml_text() const {
-  return fw::to_toml_text(*section_->table);
 }
 
 }  // namespace fw

@@ -38,10 +38,9 @@ struct TomlAssignment;
 
 /// One table of a TOML document, read with checks.
 ///
-/// Every reader throws InputError of the form `file:line: [section] key[index]: found X, expected Y`.
-/// `name(key)` demands the key, `name_or(key, value)` has a default, which then also appears in
-/// `to_toml_text()`. When everything was read, `finish()` rejects what nobody asked for. A CheckedTable is a
-/// light handle on a shared document: copies and sub-tables see the same marks.
+/// Every reader throws InputError of the form `file:line: [section] key[index]: found X, expected Y`, also
+/// where the key is missing. A CheckedTable is a light handle on a shared document, which reading does not
+/// change; defaults, resolved text and unknown keys are the business of `settings::Reader`.
 class CheckedTable {
  public:
   /// Reads a file. InputError if there is none, or it is a directory, unreadable, or no TOML (with line and
@@ -56,48 +55,39 @@ class CheckedTable {
   const std::string& path() const;
   /// The keys that the file gives in this table, sorted.
   std::vector<std::string> keys() const;
-  /// Whether the file gives the key. Counts as asking for it: the key becomes a candidate for "did you mean".
+  /// Whether the file gives the key.
   bool has(std::string_view key) const;
   /// Whether the file gives the key as a table, for keys that may also be plain values.
   bool is_table(std::string_view key) const;
+  /// Whether the file gives the key as a list, which sections [[key]] are as well.
+  bool is_list(std::string_view key) const;
+  /// Whether the file gives the key as a string, for keys that may also be numbers.
+  bool is_string(std::string_view key) const;
   /// Whether the file gives the key as a list that begins with a string, for lists that may also be numbers.
   bool holds_strings(std::string_view key) const;
 
   double number(std::string_view key, const NumberRange& range = {}) const;
-  double number_or(std::string_view key, double value, const NumberRange& range = {}) const;
   double positive_number(std::string_view key) const { return number(key, NumberRule::positive); }
 
   /// An integer in [lowest, highest].
   std::int64_t integer(std::string_view key, std::int64_t lowest = std::numeric_limits<std::int64_t>::min(),
                        std::int64_t highest = std::numeric_limits<std::int64_t>::max()) const;
-  std::int64_t integer_or(std::string_view key, std::int64_t value,
-                          std::int64_t lowest = std::numeric_limits<std::int64_t>::min(),
-                          std::int64_t highest = std::numeric_limits<std::int64_t>::max()) const;
-
   bool boolean(std::string_view key) const;
-  bool boolean_or(std::string_view key, bool value) const;
 
   std::string string(std::string_view key) const;
-  std::string string_or(std::string_view key, const std::string& value) const;
 
   /// One of the allowed strings.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed) const;
-  std::string choice_or(std::string_view key, const std::string& value,
-                        const std::vector<std::string>& allowed) const;
 
   /// [x, y, z].
   Vec3<double> vec3(std::string_view key) const;
-  Vec3<double> vec3_or(std::string_view key, const Vec3<double>& value) const;
 
   /// Lists of any length, also empty.
   std::vector<double> numbers(std::string_view key, const NumberRange& range = {}) const;
-  std::vector<double> numbers_or(std::string_view key, const std::vector<double>& values,
-                                 const NumberRange& range = {}) const;
   std::vector<std::int64_t> integers(std::string_view key,
                                      std::int64_t lowest = std::numeric_limits<std::int64_t>::min(),
                                      std::int64_t highest = std::numeric_limits<std::int64_t>::max()) const;
   std::vector<std::string> strings(std::string_view key) const;
-  std::vector<std::string> strings_or(std::string_view key, const std::vector<std::string>& values) const;
   /// A list of allowed strings.
   std::vector<std::string> choices(std::string_view key, const std::vector<std::string>& allowed) const;
   /// [[x, y, z], …].
@@ -114,21 +104,12 @@ class CheckedTable {
                                                                std::string_view what,
                                                                const std::vector<std::string>& names) const;
 
-  /// `count` numbers, given as one number for all or as a list with one per `what` ("spring").
+  /// One number for all of `count` things called `what` ("spring"), or a list with one for each.
   std::vector<double> number_or_list(std::string_view key, std::size_t count, std::string_view what,
                                      const NumberRange& range = {}) const;
-  std::vector<double> number_or_list_or(std::string_view key, double value, std::size_t count,
-                                        std::string_view what, const NumberRange& range = {}) const;
 
-  /// Puts a default that was worked out elsewhere (one number per spring, one vector per particle) into
-  /// `to_toml_text()`. Does nothing if the file gives the key.
-  void record_default(std::string_view key, const std::vector<double>& values) const;
-  void record_default(std::string_view key, const std::vector<Vec3<double>>& values) const;
-  void record_default(std::string_view key, const std::vector<int>& values) const;
-
-  /// The section [key]; `table_or_empty` gives an empty one, which takes defaults, if the file has none.
+  /// The section [key].
   CheckedTable table(std::string_view key) const;
-  CheckedTable table_or_empty(std::string_view key) const;
   /// The sections [[key]] in the file's order; none if the file has none.
   std::vector<CheckedTable> tables(std::string_view key) const;
   /// A section [key] with nothing in it, for messages about what is not there.
@@ -157,23 +138,12 @@ class CheckedTable {
   [[noreturn]] void fail_missing(std::string_view key, const std::string& expected,
                                  const std::vector<std::string>& known) const;
 
-  /// Rejects, in this table and all that were read below it, the first key that no reader asked for:
-  /// `studies/a.toml:12: unknown key "stifness" in [springs]; did you mean "stiffness"?`
-  void finish() const;
-
   /// `file:line: [section] key[i][j]`, for messages about an entry. Without a key: `file:line: [section]`.
   std::string where(std::string_view key = {}, std::initializer_list<std::size_t> indices = {}) const;
   /// Throws InputError `where(key, indices): message`.
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;
   [[noreturn]] void fail(std::string_view key, std::initializer_list<std::size_t> indices,
                          const std::string& message) const;
-
-  /// Throws InputError for an absent key, or for a given key that is probably its misspelling.
-  [[noreturn]] void fail_missing(std::string_view key, const std::string& expected) const;
-
-  /// This table as TOML text with the defaults filled in, sorted by key. Numbers read back to the same
-  /// double.
-  std::string to_toml_text() const;
 
  private:
   friend class TomlTree;

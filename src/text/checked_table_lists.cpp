@@ -14,14 +14,6 @@ std::vector<Value> read_all(const toml::array& array, const EntryPlace& place, R
   return values;
 }
 
-template <class Values>
-toml::array to_array(const Values& values) {
-  toml::array array;
-  array.reserve(values.size());
-  for (const auto& value : values) array.push_back(value);
-  return array;
-}
-
 }  // namespace
 
 std::vector<double> CheckedTable::numbers(std::string_view key, const NumberRange& range) const {
@@ -30,13 +22,6 @@ std::vector<double> CheckedTable::numbers(std::string_view key, const NumberRang
   return read_all<double>(array, {key}, [&](const toml::node& node, const EntryPlace& place) {
     return section_->number_of(node, place, range);
   });
-}
-
-std::vector<double> CheckedTable::numbers_or(std::string_view key, const std::vector<double>& values,
-                                             const NumberRange& range) const {
-  if (section_->find(key)) return numbers(key, range);
-  section_->add_default(key, to_array(values));
-  return values;
 }
 
 std::vector<std::int64_t> CheckedTable::integers(std::string_view key, std::int64_t lowest,
@@ -54,13 +39,6 @@ std::vector<std::string> CheckedTable::strings(std::string_view key) const {
   return read_all<std::string>(array, {key}, [&](const toml::node& node, const EntryPlace& place) {
     return section_->string_of(node, place);
   });
-}
-
-std::vector<std::string> CheckedTable::strings_or(std::string_view key,
-                                                  const std::vector<std::string>& values) const {
-  if (section_->find(key)) return strings(key);
-  section_->add_default(key, to_array(values));
-  return values;
 }
 
 std::vector<std::string> CheckedTable::choices(std::string_view key,
@@ -120,33 +98,10 @@ std::vector<double> CheckedTable::number_or_list(std::string_view key, std::size
   const std::string expected =
       fmt::format("one number, or an array with one number per {} ({})", what, count);
   const auto& node = section_->require(key, expected);
-  if (node.is_number()) return std::vector<double>(count, section_->number_of(node, {key}, range));
+  if (node.is_number()) return {section_->number_of(node, {key}, range)};
   const auto& array = section_->array_of(node, {key}, expected);
   if (array.size() != count) section_->fail(node, {key}, expected);
   return numbers(key, range);
-}
-
-std::vector<double> CheckedTable::number_or_list_or(std::string_view key, double value, std::size_t count,
-                                                    std::string_view what, const NumberRange& range) const {
-  if (section_->find(key)) return number_or_list(key, count, what, range);
-  section_->add_default(key, value);
-  return std::vector<double>(count, value);
-}
-
-void CheckedTable::record_default(std::string_view key, const std::vector<double>& values) const {
-  if (!section_->find(key)) section_->add_default(key, to_array(values));
-}
-
-void CheckedTable::record_default(std::string_view key, const std::vector<int>& values) const {
-  if (!section_->find(key)) section_->add_default(key, to_array(values));
-}
-
-void CheckedTable::record_default(std::string_view key, const std::vector<Vec3<double>>& values) const {
-  if (section_->find(key)) return;
-  toml::array array;
-  array.reserve(values.size());
-  for (const auto& value : values) array.push_back(toml::array{value.x, value.y, value.z});
-  section_->add_default(key, std::move(array));
 }
 
 }  // namespace fw

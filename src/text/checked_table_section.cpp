@@ -62,17 +62,9 @@ std::string describe(const toml::node& node) {
   return node.is_table() ? "a table" : "a date or time";
 }
 
-toml::node* CheckedTable::Section::find(std::string_view key) const {
-  auto& candidates = document->asked[table];
-  if (std::find(candidates.begin(), candidates.end(), key) == candidates.end()) candidates.emplace_back(key);
-  toml::node* node = table->get(key);
-  if (node) document->read.insert(node);
-  return node;
-}
-
 toml::node& CheckedTable::Section::require(std::string_view key, std::string_view expected) const {
-  if (toml::node* node = find(key)) return *node;
-  fail_missing(key, expected, document->asked[table]);
+  if (toml::node* node = table->get(key)) return *node;
+  fail_missing(key, expected, {std::string(key)});
 }
 
 void CheckedTable::Section::fail_missing(std::string_view key, std::string_view expected,
@@ -128,28 +120,6 @@ std::string CheckedTable::Section::unknown_key_message(const toml::key& key, con
   std::string message = fmt::format("unknown key {} {}", toml_quoted(key.str()), place);
   if (suggestion) message += fmt::format("; did you mean \"{}\"?", *suggestion);
   return message;
-}
-
-void CheckedTable::Section::find_unknown(toml::source_index& line, std::string& message) const {
-  for (auto&& [key, node] : *table) {
-    if (!document->read.contains(&node)) {
-      const toml::source_index here = key.source().begin.line;
-      if (message.empty() || here < line) {
-        line = here;
-        message = unknown_key_message(key, node, document->asked[table]);
-      }
-      continue;
-    }
-    const std::string child = (path.empty() ? "" : path + ".") + std::string(key.str());
-    if (auto* inner = node.as_table()) {
-      Section{document, inner, child}.find_unknown(line, message);
-    } else if (auto* array = node.as_array(); array && array->is_array_of_tables()) {
-      for (std::size_t i = 0; i < array->size(); ++i) {
-        Section{document, array->get(i)->as_table(), fmt::format("{}[{}]", child, i)}.find_unknown(line,
-                                                                                                   message);
-      }
-    }
-  }
 }
 
 double CheckedTable::Section::number_of(const toml::node& node, const EntryPlace& place,

@@ -4,9 +4,6 @@
 
 #include <toml++/toml.h>
 
-#include <unordered_map>
-#include <unordered_set>
-
 #include "text/checked_table.hpp"
 #include "text/toml_assignment.hpp"
 
@@ -32,32 +29,18 @@ struct CheckedTable::Section {
     /// What was put into it since, each in the section at the path.
     std::vector<std::pair<std::string, std::vector<TomlAssignment>>> assigned;
     toml::table root;
-    toml::table nothing;                             ///< what a section that is not there has in it
-    std::unordered_set<const toml::node*> defaults;  ///< entries that the file does not give
-    std::unordered_set<const toml::node*> read;
-    std::unordered_map<const toml::table*, std::vector<std::string>> asked;  ///< candidates of "did you mean"
+    toml::table nothing;  ///< what a section that is not there has in it
   };
 
   std::shared_ptr<Document> document;
   toml::table* table = nullptr;
   std::string path;
 
-  /// Notes that the key is known; the entry, marked as read, or null.
-  toml::node* find(std::string_view key) const;
-  /// The same for a key that has to be there.
+  /// The entry of a key that has to be there.
   toml::node& require(std::string_view key, std::string_view expected) const;
-  /// Adds an entry that the file does not give.
-  template <class Value>
-  void add_default(std::string_view key, Value&& value) const {
-    const auto [position, inserted] = table->insert(key, std::forward<Value>(value));
-    document->read.insert(&position->second);
-    if (inserted) document->defaults.insert(&position->second);
-  }
 
   std::string where(const toml::node* node, const EntryPlace& place) const;
   [[noreturn]] void fail(const toml::node& node, const EntryPlace& place, std::string_view expected) const;
-  /// The first key below this section that nobody asked for: line and message.
-  void find_unknown(toml::source_index& line, std::string& message) const;
   std::string unknown_key_message(const toml::key& key, const toml::node& node,
                                   const std::vector<std::string>& known) const;
   [[noreturn]] void fail_missing(std::string_view key, std::string_view expected,

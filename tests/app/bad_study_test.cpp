@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
         study("NeitherNameNorScene", convergence + rk4 + "[[problem]]\nt_end = 1\n",
               {"s.toml:4", "[problem[0]]", "name", "scene"}),
         study("NameAndScene", convergence + rk4 + oscillator + "scene = 'a.toml'\n",
-              {"s.toml:4", "[problem[0]]", "both"}),
+              {"s.toml:6", "[problem[0]]", "both"}),
         study("UnknownKey", convergence + rk4 + oscillator + "tend = 1\n",
               {"s.toml:6", "tend", "did you mean \"t_end\""}),
         study("UnknownParameter", convergence + rk4 + oscillator + "parameters = { omga = 1 }\n",

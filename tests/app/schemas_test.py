@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """The JSON schemas that `federwerk schema` prints: every study of the project is valid, and for every declared
-setting a misspelt key, a wrong type and a value out of range are refused by the schema and by the program alike.
+setting and every option of a method a misspelt name, a wrong type and a value out of range are refused by the schema
+and by the program alike. The program reads all files at once (`federwerk check`).
 
 usage: schemas_test.py FEDERWERK [unittest arguments]
 """
 
-import concurrent.futures
 import copy
+import functools
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -17,8 +19,11 @@ import unittest
 
 import jsonschema
 
+from scene_samples import FLAWED_SCENES, MISSING, SCENES
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 STUDIES = ROOT / "studies"
+PROJECT = sorted(STUDIES.rglob("*.toml"))
 FEDERWERK = None
 
 OSCILLATOR = {"name": "harmonic_oscillator", "t_end": 1.0, "parameters": {"stiffness": 2.0}, "label": "a"}
@@ -50,29 +55,13 @@ BASES = {
 }
 
 
-WORLD = {"title": "T", "world": {}, "anchor": [{"particle": 0, "stiffness": 1.0}],
-         "obstacle": [{"shape": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 1.0},
-                      {"shape": "sphere", "centre": [0, 0, 0], "radius": 1.0, "stiffness": 1.0},
-                      {"shape": "box", "lower": [0, 0, 0], "upper": [1, 1, 1], "stiffness": 1.0}]}
-CHAIN = {"kind": "chain", "count": 3, "length": 1.0, "mass": 1.0, "stiffness": 1.0}
-CLOTH = {"kind": "cloth", "counts": [3, 3], "size": [1.0, 1.0], "total_mass": 1.0, "stiffness": 1.0}
-GRID = {"kind": "grid", "counts": [3, 3, 3], "spacing": 1.0, "density": 1.0, "stiffness": {"structural": 1.0, "shear": 2.0}}
-# Valid scenes with all sections.
-SCENES = {
-    "scene-explicit": {**WORLD, "particles": {"position": [[0, 0, 0], [1, 0, 0]], "mass": 1.0},
-                       "springs": {"between": [[0, 1]], "stiffness": 1.0}},
-    "scene-chain": {**WORLD, "generate": CHAIN},
-    "scene-cloth": {**WORLD, "generate": CLOTH},
-    "scene-grid": {**WORLD, "generate": GRID},
-    "scene-block": {**WORLD, "generate": {**GRID, "kind": "block", "stiffness": 1.0}},
-}
-
-
 def toml(table, path=""):
     """The table as TOML text."""
     def is_sections(value):
         return isinstance(value, list) and value and all(isinstance(entry, dict) for entry in value)
-    lines = [f"{key} = {json.dumps(value)}" for key, value in table.items()
+    def text(value):
+        return json.dumps(value).replace("NaN", "nan").replace("Infinity", "inf")
+    lines = [f"{key} = {text(value)}" for key, value in table.items()
              if not isinstance(value, dict) and not is_sections(value)]
     for key, value in table.items():
         place = f"{path}.{key}" if path else key
@@ -84,8 +73,16 @@ def toml(table, path=""):
     return "\n".join(lines)
 
 
+@functools.cache
 def schema_of(kind):
-    return json.loads(subprocess.run([FEDERWERK, "schema", kind], check=True, capture_output=True).stdout)
+    schema = json.loads(subprocess.run([FEDERWERK, "schema", kind], check=True, capture_output=True).stdout)
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return schema
+
+
+@functools.cache
+def validator_of(kind):
+    return jsonschema.Draft202012Validator(schema_of(kind))
 
 
 def subschemas(schema, key):
@@ -164,7 +161,10 @@ def changed(document, path, key, value):
     place = result
     for step in path:
         place = place[step]
-    place[key] = value
+    if value is MISSING:
+        del place[key]
+    else:
+        place[key] = value
     return result
 
 
@@ -191,59 +191,165 @@ def mutations(kind, schema):
                         yield key, changed(base, path, key, wrong)
 
 
-def refusal(document, directory, number, is_scene):
-    """Exit code and message of the program for the document."""
-    file = directory / f"m{number}.toml"
-    file.write_text(toml(document), encoding="utf-8")
-    command = ["run", "--quick", str(file), "-o", str(directory / "out")]
-    if is_scene:
-        command = ["simulate", str(file), "--method", "rk4", "--step", "0.01", "--t-end", "0.01",
-                   "-o", str(directory / f"s{number}.h5")]
-    run = subprocess.run([FEDERWERK, *command], capture_output=True, encoding="utf-8", timeout=120)
+def checked(arguments):
+    """What the program says of files or calls: exit code, and an answer for each."""
+    run = subprocess.run([FEDERWERK, "check", "--json", "--quick", *map(str, arguments)], capture_output=True,
+                         encoding="utf-8", timeout=120)
+    return run.returncode, json.loads(run.stdout)
+
+
+def refusal(file):
+    """Exit code and message of the program that is to compute what the file says."""
+    command = ["run", "--quick", file, "-o", file.parent / "out"]
+    if "kind" not in tomllib.loads(file.read_text(encoding="utf-8")):
+        command = ["simulate", file, "--method", "rk4", "--step", "0.01", "--t-end", "0.01",
+                   "-o", file.with_suffix(".h5")]
+    run = subprocess.run([FEDERWERK, *map(str, command)], capture_output=True, encoding="utf-8", timeout=120)
     return run.returncode, run.stderr
 
 
+def call_of(method, option, value):
+    return f"{method}[{option}={value}]"
+
+
+def wrong_calls():
+    """(call, the name that is wrong, the call as the schema sees it): each has one mistake."""
+    for method, section in schema_of("method-options")["properties"].items():
+        for option, schema in section["properties"].items():
+            yield call_of(method, option + "z", 1), option + "z", {method: {option + "z": 1}}
+            seen = []
+            for wrong in wrong_values(schema):
+                is_text = isinstance(wrong, str)
+                if wrong not in seen and (is_text or schema.get("type") != "string"):  # a call is text anyway
+                    seen.append(wrong)
+                    yield call_of(method, option, wrong), option, {method: {option: wrong}}
+
+
 class Schemas(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # Reads for some seconds beside the tests.
+        cls.project = subprocess.Popen([FEDERWERK, "check", "--json", "--quick", *map(str, PROJECT)],
+                                       stdout=subprocess.PIPE, encoding="utf-8")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.project.kill()
+        cls.project.communicate()
+
     def test_every_study_of_the_project_is_valid(self):
-        schemas = {kind: jsonschema.Draft202012Validator(schema_of(kind)) for kind in BASES}
         count = 0
-        for file in sorted(STUDIES.rglob("*.toml")):
+        for file in PROJECT:
             document = tomllib.loads(file.read_text(encoding="utf-8"))
             if "kind" not in document:
                 continue  # a scene
             count += 1
             with self.subTest(file=file.relative_to(ROOT)):
-                errors = [error.message for error in schemas[document["kind"]].iter_errors(document)]
+                errors = [error.message for error in validator_of(document["kind"]).iter_errors(document)]
                 self.assertEqual(errors, [])
         self.assertGreaterEqual(count, 40)
 
     def test_every_scene_of_the_project_is_valid(self):
-        schema = jsonschema.Draft202012Validator(schema_of("scene"))
         files = sorted((STUDIES / "scenes").rglob("*.toml"))
         self.assertGreaterEqual(len(files), 10)
         for file in files:
             with self.subTest(file=file.relative_to(ROOT)):
                 document = tomllib.loads(file.read_text(encoding="utf-8"))
-                self.assertEqual([error.message for error in schema.iter_errors(document)], [])
+                self.assertEqual([error.message for error in validator_of("scene").iter_errors(document)], [])
+
+    def test_the_program_accepts_every_file_of_the_project(self):
+        answers, _ = self.project.communicate(timeout=120)
+        answers = json.loads(answers)
+        self.assertEqual([answer["message"] for answer in answers if not answer["valid"]], [])
+        self.assertEqual(self.project.returncode, 0)
+        self.assertEqual([answer["name"] for answer in answers], [str(file) for file in PROJECT])
+        self.assertEqual({answer["type"] for answer in answers}, {"study", "scene"})
 
     def test_mistakes_in_every_setting_are_refused_by_schema_and_program_alike(self):
-        with tempfile.TemporaryDirectory() as name, concurrent.futures.ThreadPoolExecutor(2) as pool:
-            directory = pathlib.Path(name)
-            for kind in [*BASES, *SCENES]:
-                schema = schema_of(kind.split("-")[0])
-                jsonschema.Draft202012Validator.check_schema(schema)
-                validator = jsonschema.Draft202012Validator(schema)
+        with tempfile.TemporaryDirectory() as name:
+            cases, samples = [], []
+            for place, kind in enumerate([*BASES, *SCENES]):
+                validator = validator_of(kind.split("-")[0])
                 self.assertTrue(validator.is_valid(base_of(kind)),
                                 [error.message for error in validator.iter_errors(base_of(kind))])
-                cases = list(mutations(kind, schema))
-                self.assertGreater(len(cases), 25, kind)
-                answers = pool.map(lambda case: refusal(case[1][1], directory, f"{kind}{case[0]}", kind in SCENES),
-                                   enumerate(cases))
-                for (key, document), (code, message) in zip(cases, answers):
-                    with self.subTest(kind=kind, key=key, text=toml(document)):
-                        self.assertFalse(validator.is_valid(document), "the schema accepts it")
-                        self.assertEqual(code, 2, message)
-                        self.assertIn(key.rstrip("z"), message)
+                flawed = list(mutations(kind, schema_of(kind.split("-")[0])))
+                self.assertGreater(len(flawed), 25, kind)
+                samples.append(len(cases) + 17 * place % len(flawed))
+                cases += [(kind, key, document, toml(document)) for key, document in flawed]
+            self.assertGreater(len(cases), 2500)
+            files = [pathlib.Path(name) / f"{number}.toml" for number in range(len(cases))]
+            for file, (_, _, _, text) in zip(files, cases):
+                file.write_text(text, encoding="utf-8")
+            code, answers = checked(files)
+            self.assertEqual(code, 2)
+            self.assertEqual(len(answers), len(cases))
+            for (kind, key, document, text), answer in zip(cases, answers):
+                with self.subTest(kind=kind, key=key, text=text):
+                    self.assertFalse(validator_of(kind.split("-")[0]).is_valid(document), "the schema accepts it")
+                    self.assertFalse(answer["valid"], "the program accepts it")
+                    self.assertIn(key.rstrip("z"), answer["message"])
+            for number in samples:  # whoever is to compute it says the same
+                with self.subTest(kind=cases[number][0], text=cases[number][3]):
+                    self.assertEqual(refusal(files[number]), (2, f"federwerk: {answers[number]['message']}\n"))
+
+    def test_flaws_of_scenes_are_refused_by_the_program_and_where_it_can_by_the_schema(self):
+        with tempfile.TemporaryDirectory() as name:
+            files, documents = [], []
+            for number, (base, place, value, _, _) in enumerate(FLAWED_SCENES):
+                documents.append(changed(base_of(base), place[:-1], place[-1], value))
+                files.append(pathlib.Path(name) / f"{number}.toml")
+                files[-1].write_text(toml(documents[-1]), encoding="utf-8")
+            code, answers = checked(files)
+            self.assertEqual(code, 2)
+            for flaw, file, document, answer in zip(FLAWED_SCENES, files, documents, answers):
+                with self.subTest(flaw=flaw[:3], message=answer["message"]):
+                    self.assertFalse(answer["valid"])
+                    self.assertEqual(answer["type"], "scene")
+                    self.assertRegex(answer["message"], rf"^{re.escape(str(file))}(:\d+)?: ")
+                    self.assertIn(flaw[3], answer["message"])
+                    self.assertEqual(validator_of("scene").is_valid(document), not flaw[4])
+
+    def test_valid_bases_are_valid_for_the_program(self):
+        with tempfile.TemporaryDirectory() as name:
+            files = []
+            for kind in [*BASES, *SCENES]:
+                files.append(pathlib.Path(name) / f"{kind}.toml")
+                files[-1].write_text(toml(base_of(kind)), encoding="utf-8")
+            code, answers = checked(files)
+            self.assertEqual([answer["message"] for answer in answers if not answer["valid"]], [])
+            self.assertEqual(code, 0)
+
+    def test_mistakes_in_options_of_methods_are_refused_by_schema_and_program_alike(self):
+        cases = list(wrong_calls())
+        self.assertGreater(len(cases), 400)
+        self.assertGreater(len({call.split("[")[0] for call, _, _ in cases if ":" in call}), 20)  # foreign methods
+        code, answers = checked(word for call, _, _ in cases for word in ("--method", call))
+        self.assertEqual(code, 2)
+        self.assertEqual(len(answers), len(cases))
+        for (call, wrong, document), answer in zip(cases, answers):
+            with self.subTest(call=call):
+                self.assertFalse(validator_of("method-options").is_valid(document), "the schema accepts it")
+                self.assertFalse(answer["valid"], "the program accepts it")
+                self.assertIn(wrong, answer["message"])
+
+    def test_choices_and_defaults_of_options_are_accepted_by_schema_and_program_alike(self):
+        right = []
+        for method, section in schema_of("method-options")["properties"].items():
+            for option, schema in section["properties"].items():
+                values = schema.get("enum", [])
+                if option == "inner_table":  # which ones there are depends on `inner`
+                    values = values[:1]
+                values = {*values, *(one["const"] for one in schema.get("anyOf", []) if "const" in one),
+                          schema.get("default", "")} - {""}
+                right += [(call_of(method, option, value), {method: {option: value}})
+                          for value in sorted(values, key=str)]
+        self.assertGreater(len(right), 300)
+        code, answers = checked(word for call, _ in right for word in ("--method", call))
+        self.assertEqual([answer["message"] for answer in answers if not answer["valid"]], [])
+        self.assertEqual(code, 0)
+        for call, document in right:
+            with self.subTest(call=call):
+                self.assertTrue(validator_of("method-options").is_valid(document))
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "catalog/method_options.hpp"
 #include "catalog/methods.hpp"
+#include "core/error.hpp"
 
 namespace fw::catalog {
 namespace {

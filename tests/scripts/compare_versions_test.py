@@ -220,6 +220,8 @@ class Programs(unittest.TestCase):
         self.assertEqual(compare_versions.option_values(
             {"expected": "cg, cholesky or lu", "default": "lu"}), ["cg", "cholesky"])
         self.assertEqual(compare_versions.option_values({"expected": "a number in (0, 1]", "default": "1"}), [])
+        self.assertEqual(compare_versions.option_values(
+            {"expected": 'one of "1fe", "2a"', "default": "1fe", "choices": ["1fe", "2a"]}), ["2a"])
 
     def test_a_pattern_that_nothing_fits_is_bad_usage(self):
         answer = self.compare(self.program("after"), "--only", "nothing")

@@ -100,6 +100,127 @@ TEST(Settings, TakeTheFilesValuesAndTheVariablesAsDefaults) {
             (std::vector<double>{1, 2, 4}));
 }
 
+struct WithWord {
+  int stages = 8;
+  double fraction = 0.5;
+};
+void declare(Archive& a, WithWord& s) {
+  a(setting("stages", s.stages).integers(2, 500).or_word("auto", 0));
+  a(setting("fraction", s.fraction).above(0.0).up_to(1.0));
+}
+
+TEST(Settings, MayHaveAWordInThePlaceOfAnInteger) {
+  const auto read_text = [](const std::string& text) {
+    WithWord s;
+    read(CheckedTable::parse_text(text, "a.toml"), s);
+    return s;
+  };
+  EXPECT_EQ(read_text("").stages, 8);
+  EXPECT_EQ(read_text("stages = 'auto'").stages, 0);
+  EXPECT_EQ(read_text("stages = 5").stages, 5);
+  EXPECT_EQ(identity_text(read_text("stages = 'auto'\nfraction = 1")), "fraction = 1.0\nstages = \"auto\"\n");
+  EXPECT_THROW(read_text("stages = 0"), InputError);
+  EXPECT_THROW(read_text("stages = 'aut'"), InputError);
+  EXPECT_THROW(read_text("fraction = 0"), InputError);
+  EXPECT_THROW(read_text("fraction = 1.5"), InputError);
+  const std::string schema = json_schema(describe<WithWord>({.name = "w"}), {.title = "T"});
+  EXPECT_THAT(schema, HasSubstr("\"const\": \"auto\""));
+  EXPECT_THAT(schema, AllOf(HasSubstr("\"minimum\": 2"), HasSubstr("\"maximum\": 500"),
+                            HasSubstr("\"exclusiveMinimum\": 0"), HasSubstr("\"maximum\": 1")));
+  EXPECT_THAT(markdown_table(describe<WithWord>({.name = "w"}), "key"),
+              AllOf(HasSubstr("integer 2…500, or `\"auto\"`"), HasSubstr("number > 0…1")));
+}
+
+/// Things and groups of them, whose settings depend on how many there are.
+struct Things {
+  std::size_t count = 0;
+  std::vector<double> mass = {1.0};
+};
+void declare(Archive& a, Things& s) {
+  a(setting("mass", s.mass).positive().or_one_per("thing", s.count));
+}
+struct Group {
+  Things things;
+  std::string name;
+};
+void declare(Archive& a, Group& s) {
+  declare(a, s.things);
+  a(setting("name", s.name));
+}
+struct Collection {
+  std::int64_t count = 0;
+  std::optional<Things> things;
+  std::vector<Group> groups;
+  std::optional<double> size, spacing;
+};
+void declare(Archive& a, Collection& s) {
+  a(setting("count", s.count).required().integers(1, 9));
+  Things fresh;
+  fresh.count = static_cast<std::size_t>(s.count);
+  a.section_or_sections({"things"}, s.things, fresh, {"things"}, s.groups, Group{fresh, "nobody"});
+  a.one_of({{"size", [&] { a(setting("size", s.size)); }},
+            {"spacing", [&] { a(setting("spacing", s.spacing)); }}});
+}
+
+Collection read_collection(const std::string& text, std::string* resolved = nullptr) {
+  Collection s;
+  const TomlTree tree = read(CheckedTable::parse_text(text, "a.toml"), s);
+  if (resolved != nullptr) *resolved = tree.text();
+  return s;
+}
+
+std::string refusal_of_collection(const std::string& text) {
+  try {
+    read_collection(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Settings, MayBeInOneSectionOrInManyAndDependOnWhatStandsBefore) {
+  const std::string top = "count = 2\nsize = 1\n";
+  std::string resolved;
+  const Collection one = read_collection(top + "[things]\nmass = [1, 2]\n", &resolved);
+  ASSERT_TRUE(one.things);
+  EXPECT_EQ(one.things->mass, (std::vector<double>{1, 2}));
+  EXPECT_TRUE(one.groups.empty());
+  EXPECT_EQ(resolved, "count = 2\nsize = 1\n\n[things]\nmass = [1, 2]\n");
+  const Collection many = read_collection(top + "[[things]]\nmass = 3\n[[things]]\nname = 'x'\n", &resolved);
+  EXPECT_FALSE(many.things);
+  ASSERT_EQ(many.groups.size(), 2u);
+  EXPECT_EQ(many.groups[0].things.mass, std::vector<double>{3}) << "one number for all";
+  EXPECT_EQ(many.groups[0].name, "nobody");
+  EXPECT_EQ(many.groups[1].things.mass, std::vector<double>{1});
+  EXPECT_EQ(resolved,
+            "count = 2\nsize = 1\n\n[[things]]\nmass = 3\nname = \"nobody\"\n"
+            "\n[[things]]\nmass = 1.0\nname = \"x\"\n");
+  EXPECT_EQ(identity_text(one), "count = 2\nsize = 1.0\n\n[things]\nmass = [1.0, 2.0]\n");
+  EXPECT_FALSE(read_collection(top).things);
+  EXPECT_TRUE(read_collection(top + "things = []\n", &resolved).groups.empty());
+  EXPECT_EQ(resolved, "count = 2\nsize = 1\nthings = []\n") << "as the file has it";
+
+  EXPECT_EQ(refusal_of_collection(top + "[things]\nmass = [1, 2, 3]\n"),
+            "a.toml:4: [things] mass: found an array of 3 entries, expected one number, or an array with one "
+            "number "
+            "per thing (2)");
+  EXPECT_EQ(refusal_of_collection(top + "[[things]]\n[[things]]\nmass = [1, 0]\n"),
+            "a.toml:5: [things[1]] mass[1]: found 0, expected a finite number > 0");
+  EXPECT_EQ(refusal_of_collection(top + "things = 3\n"),
+            "a.toml:3: things: found 3, expected a section [things]");
+  EXPECT_EQ(refusal_of_collection(top + "[[things]]\nmas = 1\n"),
+            "a.toml:4: unknown key \"mas\" in [things[0]]; did you mean \"mass\"?");
+}
+
+TEST(Settings, TellWhatIsMissingBeforeWhatMayDependOnIt) {
+  EXPECT_EQ(refusal_of_collection("colour = 1\n"),
+            "a.toml: missing key \"count\", expected an integer from 1 to 9");
+  EXPECT_EQ(refusal_of_collection("coun = 1\nsize = 1\n"),
+            "a.toml:1: unknown key \"coun\" at the top of the file; did you mean \"count\"?");
+  EXPECT_EQ(refusal_of_collection("count = 1\nsize = 1\nspacing = 1\n"),
+            "a.toml:3: spacing: found both of \"size\" and \"spacing\", expected exactly one");
+}
+
 TEST(Settings, QuickReplacesWhatHasAQuickRuleAndNothingElse) {
   EXPECT_EQ(read_sample(least).levels, 9);
   EXPECT_EQ(read_sample(least, true).levels, 6);
