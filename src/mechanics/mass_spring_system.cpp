@@ -114,20 +114,15 @@ void MassSpringSystem::jacobian(double, ConstVectorRef y, SparseMatrix& J) const
   blocks.require_jacobian(J, "J");
   double* values = J.valuePtr();
   std::fill_n(values, J.nonZeros(), 0.0);
-  const Index n = degrees_of_freedom();
-  for (Index c = 0; c < n; ++c) {
+  const auto n = static_cast<int>(degrees_of_freedom());
+  for (int c = 0; c < n; ++c) {
     if (fixed_[static_cast<std::size_t>(c)] == 0) values[blocks.jacobian_unit(c)] = 1.0;
   }
   count_degenerate(elements_->fill_jacobian(blocks, model_.mass, y.data(), y.data() + n, values));
 }
 
-void MassSpringSystem::jacobian_product(double, ConstVectorRef y, ConstVectorRef w, VectorRef out) const {
-  const Index n = degrees_of_freedom();
-  count_degenerate(
-      elements_->tangent_product(y.data(), y.data() + n, w.data(), w.data() + n, out.data() + n));
-  out.tail(n).array() /= mass_.array();
-  out.head(n) = w.tail(n);
-  for (const int i : model_.fixed) store3(out.data(), i, Vec3<double>{});
+void MassSpringSystem::jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const {
+  first_order_product(*this, t, y, w, out);
 }
 
 Index MassSpringSystem::degrees_of_freedom() const {

@@ -5,13 +5,14 @@
 namespace fw {
 
 FirstOrderJacobian::FirstOrderJacobian(const SparseMatrix& tangent)
-    : outer_(tangent.outerIndexPtr(), tangent.outerIndexPtr() + tangent.cols() + 1),
+    : slots_(static_cast<int>(tangent.cols()), static_cast<int>(tangent.nonZeros())),
+      outer_(tangent.outerIndexPtr(), tangent.outerIndexPtr() + tangent.cols() + 1),
       inner_(tangent.innerIndexPtr(), tangent.innerIndexPtr() + tangent.nonZeros()) {}
 
 SparseMatrix FirstOrderJacobian::pattern() const {
   const int n = static_cast<int>(outer_.size()) - 1;
   SparseMatrix matrix(2 * n, 2 * n);
-  matrix.resizeNonZeros(2 * half());
+  matrix.resizeNonZeros(slots_.entries());
   int* outer = matrix.outerIndexPtr();
   int* inner = matrix.innerIndexPtr();
   int count = 0;

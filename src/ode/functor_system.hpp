@@ -1,22 +1,14 @@
 #pragma once
 
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "core/error.hpp"
+#include "ode/complex_step.hpp"
 #include "ode/first_order_jacobian.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw {
-
-namespace detail {
-
-/// Column j of the Jacobian of `f` at y by a complex step, Im f(y + i·h·e_j)/h with h = 1e-200: exact to
-/// rounding, since nothing is subtracted [Squire, Trapp 1998].
-inline constexpr double complex_step = 1e-200;
-
-}  // namespace detail
 
 /// A small dense first-order system given by a functor with
 /// `template <class S> void operator()(const S& t, std::span<const S> y, std::span<S> dydt) const`.
@@ -46,34 +38,22 @@ class FunctorSystem final : public OdeSystem {
   }
 
   void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override {
-    std::vector<Complex> state(y.data(), y.data() + size_);
-    std::vector<Complex> slope(count());
-    for (Index j = 0; j < size_; ++j) {
-      auto& perturbed = state[static_cast<std::size_t>(j)];
-      perturbed.imag(detail::complex_step);
-      functor_(Complex(t), std::span<const Complex>(state), std::span<Complex>(slope));
-      perturbed.imag(0.0);
-      for (Index i = 0; i < size_; ++i) {
-        J.valuePtr()[j * size_ + i] = slope[static_cast<std::size_t>(i)].imag() / detail::complex_step;
-      }
-    }
+    complex_step_jacobian(y, count(), 0, size_, evaluate_at(t),
+                          [&](Index i, Index j, double value) { J.valuePtr()[j * size_ + i] = value; });
   }
 
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override {
-    std::vector<Complex> state(count());
-    std::vector<Complex> slope(count());
-    for (std::size_t i = 0; i < count(); ++i) {
-      const auto k = static_cast<Index>(i);
-      state[i] = {y[k], detail::complex_step * w[k]};
-    }
-    functor_(Complex(t), std::span<const Complex>(state), std::span<Complex>(slope));
-    for (std::size_t i = 0; i < count(); ++i) {
-      out[static_cast<Index>(i)] = slope[i].imag() / detail::complex_step;
-    }
+    complex_step_product(y, w, evaluate_at(t), out);
   }
 
  private:
   std::size_t count() const { return static_cast<std::size_t>(size_); }
+  /// The right-hand side of complex numbers.
+  auto evaluate_at(double t) const {
+    return [this, t](const std::vector<Complex>& y, std::vector<Complex>& dydt) {
+      functor_(Complex(t), std::span<const Complex>(y), std::span<Complex>(dydt));
+    };
+  }
 
   Index size_;
   Functor functor_;
@@ -110,13 +90,12 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
     for (int j = 0; j < n; ++j) {
       values[blocks_.diagonal(j)] = 0.0;
       values[blocks_.unit(j)] = 1.0;
-      force_derivative(t, y.head(n), y.tail(n), j, [&](Index i, double df) {
-        values[blocks_.stiffness(j * n + static_cast<int>(i), j)] = df / mass_[i];
-      });
-      force_derivative(t, y.head(n), y.tail(n), n + j, [&](Index i, double df) {
-        values[blocks_.damping(j * n + static_cast<int>(i), j)] = df / mass_[i];
-      });
     }
+    complex_step_jacobian(y, count(), 0, 2 * n, evaluate_at(t), [&](Index row, Index column, double df) {
+      const auto i = static_cast<int>(row), j = static_cast<int>(column);
+      values[j < n ? blocks_.stiffness(j * n + i, j) : blocks_.damping((j - n) * n + i, j - n)] =
+          df / mass_[i];
+    });
   }
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override {
     first_order_product(*this, t, y, w, out);
@@ -145,29 +124,17 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
           "this system has no spring elements: its tangent stiffness is available as \"exact\" only");
     }
     const Index n = mass_.size();
-    for (Index j = 0; j < n; ++j) {
-      force_derivative(t, q, v, j, [&](Index i, double df) { K.valuePtr()[j * n + i] = df; });
-    }
+    complex_step_jacobian(stacked(q, v), count(), 0, n, evaluate_at(t),
+                          [&](Index i, Index j, double df) { K.valuePtr()[j * n + i] = df; });
   }
   void damping(double t, ConstVectorRef q, ConstVectorRef v, SparseMatrix& D) const override {
     const Index n = mass_.size();
-    for (Index j = 0; j < n; ++j) {
-      force_derivative(t, q, v, n + j, [&](Index i, double df) { D.valuePtr()[j * n + i] = df; });
-    }
+    complex_step_jacobian(stacked(q, v), count(), n, 2 * n, evaluate_at(t),
+                          [&](Index i, Index j, double df) { D.valuePtr()[(j - n) * n + i] = df; });
   }
   void tangent_product(double t, ConstVectorRef q, ConstVectorRef v, ConstVectorRef dq, ConstVectorRef dv,
                        VectorRef out) const override {
-    std::vector<Complex> q_step(count()), v_step(count()), f(count());
-    for (std::size_t i = 0; i < count(); ++i) {
-      const auto k = static_cast<Index>(i);
-      q_step[i] = {q[k], detail::complex_step * dq[k]};
-      v_step[i] = {v[k], detail::complex_step * dv[k]};
-    }
-    functor_(Complex(t), std::span<const Complex>(q_step), std::span<const Complex>(v_step),
-             std::span<Complex>(f));
-    for (std::size_t i = 0; i < count(); ++i) {
-      out[static_cast<Index>(i)] = f[i].imag() / detail::complex_step;
-    }
+    complex_step_product(stacked(q, v), stacked(dq, dv), evaluate_at(t), out);
   }
 
  private:
@@ -181,16 +148,17 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
     for (std::size_t i = 0; i < n; ++i) dydt[n + i] /= S(mass_[static_cast<Index>(i)]);
   }
 
-  /// Calls `sink(i, ∂f_i/∂y_j)` for all i, with y = (q, v).
-  template <class Sink>
-  void force_derivative(double t, ConstVectorRef q, ConstVectorRef v, Index j, Sink sink) const {
-    const Index n = mass_.size();
-    std::vector<Complex> q_step(q.data(), q.data() + n), v_step(v.data(), v.data() + n), f(count());
-    (j < n ? q_step[static_cast<std::size_t>(j)] : v_step[static_cast<std::size_t>(j - n)])
-        .imag(detail::complex_step);
-    functor_(Complex(t), std::span<const Complex>(q_step), std::span<const Complex>(v_step),
-             std::span<Complex>(f));
-    for (Index i = 0; i < n; ++i) sink(i, f[static_cast<std::size_t>(i)].imag() / detail::complex_step);
+  static Vector stacked(ConstVectorRef q, ConstVectorRef v) {
+    Vector y(q.size() + v.size());
+    y << q, v;
+    return y;
+  }
+  /// The force at complex y = (q, v).
+  auto evaluate_at(double t) const {
+    return [this, t](const std::vector<Complex>& y, std::vector<Complex>& f) {
+      const std::span<const Complex> state(y);
+      functor_(Complex(t), state.first(count()), state.last(count()), std::span<Complex>(f));
+    };
   }
 
   Vector mass_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "mechanics/grid.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "problems/parameter.hpp"
 #include "problems/spectral_radius.hpp"
@@ -19,17 +20,13 @@ constexpr double side = 1.0;
 /// Joins every point (i, j) to (i + di, j + dj), where both exist, at the distance of the flat cloth.
 void add_springs(MassSpringModel& model, int count, int di, int dj, double stiffness, double damping) {
   const double spacing = side / (count - 1);
-  for (int j = 0; j < count; ++j) {
-    for (int i = 0; i < count; ++i) {
-      const int k = i + di, l = j + dj;
-      if (k < 0 || k >= count || l >= count) continue;
-      model.springs.first.push_back(i + count * j);
-      model.springs.second.push_back(k + count * l);
-      model.springs.stiffness.push_back(stiffness);
-      model.springs.damping.push_back(damping);
-      model.springs.rest_length.push_back(spacing * std::sqrt(di * di + dj * dj));
-    }
-  }
+  const mechanics::Grid grid{{count, count, 1}};
+  grid.for_each_point([&](int i, int j, int k) {
+    const int other = grid.neighbour(i, j, k, {di, dj, 0});
+    if (other < 0) return;
+    model.springs.add(grid.index(i, j, k), other,
+                      {stiffness, damping, spacing * std::sqrt(di * di + dj * dj)});
+  });
 }
 
 }  // namespace

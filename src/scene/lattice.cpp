@@ -9,16 +9,6 @@ namespace {
 
 using Offset = std::array<int, 3>;
 
-/// Calls `visit(i, j, k)` in the order of the indices.
-template <class Visit>
-void for_each_point(const std::array<int, 3>& counts, Visit visit) {
-  for (int k = 0; k < counts[2]; ++k) {
-    for (int j = 0; j < counts[1]; ++j) {
-      for (int i = 0; i < counts[0]; ++i) visit(i, j, k);
-    }
-  }
-}
-
 double fraction(int i, int count) {
   return count > 1 ? static_cast<double>(i) / (count - 1) : 0.0;
 }
@@ -65,7 +55,7 @@ double count_springs(const std::array<int, 3>& counts, const std::vector<SpringF
 
 Vector lattice_positions(const Lattice& lattice) {
   Vector position(3 * static_cast<Index>(lattice.point_count()));
-  for_each_point(lattice.counts, [&](int i, int j, int k) {
+  lattice.grid().for_each_point([&](int i, int j, int k) {
     const Vec3<double> x = lattice.origin + fraction(i, lattice.counts[0]) * lattice.extent[0] +
                            fraction(j, lattice.counts[1]) * lattice.extent[1] +
                            fraction(k, lattice.counts[2]) * lattice.extent[2];
@@ -85,20 +75,16 @@ mechanics::Springs lattice_springs(const Lattice& lattice, const Vector& positio
   springs.stiffness.reserve(count);
   springs.damping.reserve(count);
   springs.rest_length.reserve(count);
-  const auto& n = lattice.counts;
-  for_each_point(n, [&](int i, int j, int k) {
-    const int first = lattice.index(i, j, k);
+  const mechanics::Grid grid = lattice.grid();
+  grid.for_each_point([&](int i, int j, int k) {
+    const int first = grid.index(i, j, k);
     const auto x = load3(position.data(), first);
     for (const SpringFamily& family : families) {
-      for (const Offset& d : family.offsets) {
-        const int i2 = i + d[0], j2 = j + d[1], k2 = k + d[2];
-        if (i2 < 0 || i2 >= n[0] || j2 < 0 || j2 >= n[1] || k2 < 0 || k2 >= n[2]) continue;
-        const int second = lattice.index(i2, j2, k2);
-        springs.first.push_back(first);
-        springs.second.push_back(second);
-        springs.stiffness.push_back(family.stiffness);
-        springs.damping.push_back(family.damping);
-        springs.rest_length.push_back(rest_length_factor * norm(load3(position.data(), second) - x));
+      for (const Offset& offset : family.offsets) {
+        const int second = grid.neighbour(i, j, k, offset);
+        if (second < 0) continue;
+        const double length = norm(load3(position.data(), second) - x);
+        springs.add(first, second, {family.stiffness, family.damping, rest_length_factor * length});
       }
     }
   });
@@ -125,9 +111,8 @@ std::vector<double> cell_lumped_masses(const Lattice& lattice, double density) {
   };
   std::vector<double> mass;
   mass.reserve(lattice.point_count());
-  for_each_point(lattice.counts, [&](int i, int j, int k) {
-    mass.push_back(cell_mass * share(i, 0) * share(j, 1) * share(k, 2));
-  });
+  lattice.grid().for_each_point(
+      [&](int i, int j, int k) { mass.push_back(cell_mass * share(i, 0) * share(j, 1) * share(k, 2)); });
   return mass;
 }
 
@@ -138,7 +123,7 @@ std::vector<double> tetrahedron_lumped_masses(const Lattice& lattice, double den
   // All six tetrahedra of a cell have the same volume |det(e_0, e_1, e_2)|/6.
   const double quarter = density * std::abs(dot(edge[0], cross(edge[1], edge[2]))) / 6.0 / 4.0;
   std::vector<double> mass(lattice.point_count(), 0.0);
-  for_each_point({n[0] - 1, n[1] - 1, n[2] - 1}, [&](int i, int j, int k) {
+  mechanics::Grid{{n[0] - 1, n[1] - 1, n[2] - 1}}.for_each_point([&](int i, int j, int k) {
     std::array<std::size_t, 3> axes{0, 1, 2};
     do {
       std::array<int, 3> corner{i, j, k};

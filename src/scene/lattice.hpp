@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mechanics/grid.hpp"
 #include "mechanics/mass_spring_model.hpp"
 
 namespace fw::scene {
@@ -16,7 +17,8 @@ struct Lattice {
   Vec3<double> origin{};                 ///< of point (0, 0, 0) [m]
   std::array<Vec3<double>, 3> extent{};  ///< from the first to the last point along each axis [m]
 
-  int index(int i, int j, int k) const { return i + counts[0] * (j + counts[1] * k); }
+  mechanics::Grid grid() const { return {counts}; }
+  int index(int i, int j, int k) const { return grid().index(i, j, k); }
   std::size_t point_count() const;
 };
 

@@ -9,6 +9,9 @@ namespace fw::sparse {
 /// A square sparse matrix of 3×3 blocks, as the tangents of particles in space are, in compressed block
 /// columns: one index for nine values. The pattern is made once and holds every diagonal block; new values
 /// are taken without allocation and without a search.
+///
+/// It is made of a matrix in compressed columns and has no way back: systems fill compressed columns in
+/// place, and direct solvers read those (decision 0063).
 class BlockMatrix3 {
  public:
   using Block = Eigen::Map<const Eigen::Matrix3d>;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/work_counters.hpp"
 #include "store/file/output_file.hpp"
 #include "store/hdf5/extendible_dataset.hpp"
 
@@ -68,19 +69,10 @@ void write_system(hid_t file, const mechanics::MassSpringModel& model) {
 
 void write_counters(hid_t file, const Work& work) {
   const Handle group = make_group(file, "counters");
-  const auto count = [&](const char* name, std::uint64_t value) {
-    const auto number = static_cast<std::int64_t>(value);
-    write_dataset(group, name, "1", {}, std::span<const std::int64_t>(&number, 1));
-  };
-  count("rhs_evaluations", work.rhs_evaluations);
-  count("jacobian_evaluations", work.jacobian_evaluations);
-  count("jacobian_products", work.jacobian_products);
-  count("factorisations", work.factorisations);
-  count("linear_solves", work.linear_solves);
-  count("linear_iterations", work.linear_iterations);
-  count("newton_iterations", work.newton_iterations);
-  count("accepted_steps", work.accepted_steps);
-  count("rejected_steps", work.rejected_steps);
+  for (const WorkCounter& counter : work_counters) {
+    const auto number = static_cast<std::int64_t>(work.*counter.count);
+    write_dataset(group, counter.name, "1", {}, std::span<const std::int64_t>(&number, 1));
+  }
   write_dataset(group, "seconds", "s", {}, std::span<const double>(&work.seconds, 1));
 }
 

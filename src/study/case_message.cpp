@@ -1,5 +1,7 @@
 #include "study/case_message.hpp"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -141,9 +143,12 @@ CaseResult decode(std::string_view bytes) {
   in.read(result.parameters);
   in.read(verdict);
   in.read(result.reason);
-  if (verdict > static_cast<std::uint8_t>(Verdict::not_applicable) || !in.at_end()) {
-    throw std::runtime_error("a case's message has something else in it");
+  if (verdict > static_cast<std::uint8_t>(Verdict::not_applicable)) {
+    throw std::runtime_error(
+        fmt::format("corrupt message from a worker: found verdict {}, expected at most {}", verdict,
+                    static_cast<int>(Verdict::not_applicable)));
   }
+  if (!in.at_end()) throw std::runtime_error("corrupt message from a worker: it goes on after its end");
   result.verdict = static_cast<Verdict>(verdict);
   return result;
 }

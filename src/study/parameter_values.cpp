@@ -40,4 +40,11 @@ std::vector<double> sorted_values(const ParameterValues& given, const CheckedTab
   return values;
 }
 
+std::vector<std::size_t> spread_indices(std::size_t size, std::size_t most) {
+  const std::size_t count = std::min(size, most);
+  std::vector<std::size_t> indices(count);
+  for (std::size_t k = 0; k < count; ++k) indices[k] = count == 1 ? 0 : k * (size - 1) / (count - 1);
+  return indices;
+}
+
 }  // namespace fw::study

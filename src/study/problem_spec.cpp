@@ -234,7 +234,8 @@ void declare(settings::Archive& a, ProblemSpec& problem) {
           a(setting("scene", problem.scene).doc("a scene file, relative to the study file"));
           a(setting("scene_text", problem.scene_text)
                 .default_text("the text of `scene`")
-                .doc("the scene itself, which goes before the file; a result file keeps it in its `spec`"));
+                .doc("the scene itself, which takes precedence over the file; a result file keeps it in its "
+                     "`spec`"));
           a(setting("set", problem.set)
                 .default_text("`{}`")
                 .doc("numbers to replace in it, `set = { springs = { damping = 0.0 } }`"));
@@ -299,6 +300,11 @@ std::vector<ProblemFamily> make_families(const std::vector<FamilySpec>& specs, c
   return families;
 }
 
+void thin_out(ProblemFamily& family, std::int64_t most) {
+  family.values = thinned_out(std::move(family.values), most);
+  family.members = thinned_out(std::move(family.members), most);
+}
+
 settings::Setting methods_setting(std::vector<std::string>& methods) {
   return settings::setting("methods", methods)
       .required()
@@ -313,6 +319,18 @@ const std::vector<std::string>& checked_methods(const std::vector<std::string>& 
                                                 const CheckedTable& section, const Catalog& catalog) {
   for (std::size_t i = 0; i < methods.size(); ++i) check_call(section, "methods", i, methods[i], catalog);
   return methods;
+}
+
+std::string why_no_constant_steps(const MethodInfo& info, const OdeSystem& system) {
+  if (!info.has_fixed_step) return "it chooses its own steps, expected a method with a fixed step";
+  return why_not_applicable(info, system);
+}
+
+void require_fixed_step(const CheckedTable& file, std::size_t i, const std::string& call,
+                        const MethodInfo& info) {
+  if (info.has_fixed_step) return;
+  file.fail("methods", {i},
+            fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
 }
 
 void declare(settings::Archive& a, MethodPatterns& patterns) {

@@ -15,7 +15,7 @@ struct ProblemSpec {
   std::optional<std::string> name;
   std::optional<NumberTable> parameters;
   std::optional<std::string> scene;       ///< a path relative to the study file
-  std::optional<std::string> scene_text;  ///< what a result file keeps of it; goes before the file
+  std::optional<std::string> scene_text;  ///< what a result file keeps of it; takes precedence over the file
   std::optional<NumberTable> set;         ///< numbers to replace in the scene, by their paths
   std::optional<double> t_end;            ///< [s]
   std::optional<std::string> label;
@@ -63,6 +63,9 @@ struct ProblemFamily {
   std::vector<StudyProblem> members;  ///< one per value, labelled `<label>-<last key>=<value>`
 };
 
+/// Leaves at most `most` members, evenly spread over the family: see `spread_indices`.
+void thin_out(ProblemFamily& family, std::int64_t most);
+
 /// Makes the families of the [[problem]] sections, like `make_problems`.
 std::vector<ProblemFamily> make_families(const std::vector<FamilySpec>& specs, const StudyInput& input,
                                          std::vector<std::string>& warnings);
@@ -77,6 +80,14 @@ settings::Setting methods_setting(std::vector<std::string>& methods);
 /// Checks the calls of `methods` in `section` and returns them. Throws InputError that names the entry.
 const std::vector<std::string>& checked_methods(const std::vector<std::string>& methods,
                                                 const CheckedTable& section, const Catalog& catalog);
+
+/// Why a method cannot make constant steps on a system: its needs, or that it chooses its steps; nothing where
+/// it can.
+std::string why_no_constant_steps(const MethodInfo& info, const OdeSystem& system);
+
+/// Throws InputError that names entry `i` of `methods` where the method chooses its own steps.
+void require_fixed_step(const CheckedTable& file, std::size_t i, const std::string& call,
+                        const MethodInfo& info);
 
 /// Methods where a call may be a pattern such as "sundials:*" or "*" (every method).
 struct MethodPatterns {

@@ -71,7 +71,7 @@ class Run {
 
  private:
   /// A worker and what it does at the moment.
-  struct Desk {
+  struct WorkerSlot {
     std::unique_ptr<WorkerProcess> worker;
     std::optional<std::size_t> index{};
     Clock::time_point start{};
@@ -94,8 +94,8 @@ class Run {
     }
   }
 
-  void start_worker(std::vector<Desk>& desks) {
-    desks.push_back(
+  void start_worker(std::vector<WorkerSlot>& slots) {
+    slots.push_back(
         {std::make_unique<WorkerProcess>([this](std::size_t index, const std::atomic<bool>& interrupted) {
           RunContext context = options_.context;
           context.stop = StopToken(interrupted);
@@ -103,20 +103,21 @@ class Run {
         })});
   }
 
-  /// Gives out cases to workers that have none, starting workers as needed, at most `jobs`.
-  void give_out(std::deque<std::size_t>& queue, std::vector<Desk>& desks, std::size_t jobs) {
+  /// Assigns cases to workers that have none, starting workers as needed, at most `jobs`.
+  void dispatch(std::deque<std::size_t>& queue, std::vector<WorkerSlot>& slots, std::size_t jobs) {
     while (!queue.empty() && !options_.context.stop.stop_requested()) {
-      auto idle = std::find_if(desks.begin(), desks.end(), [](const Desk& desk) { return !desk.index; });
-      if (idle == desks.end()) {
-        if (desks.size() >= jobs) return;
+      auto idle =
+          std::find_if(slots.begin(), slots.end(), [](const WorkerSlot& slot) { return !slot.index; });
+      if (idle == slots.end()) {
+        if (slots.size() >= jobs) return;
         try {
-          start_worker(desks);
+          start_worker(slots);
         } catch (const std::system_error& error) {
           // Those there are do all the work.
-          if (desks.empty()) throw SystemError(error.what());
+          if (slots.empty()) throw SystemError(error.what());
           return;
         }
-        idle = desks.end() - 1;
+        idle = slots.end() - 1;
       }
       idle->index = queue.front();
       idle->start = Clock::now();
@@ -127,58 +128,58 @@ class Run {
 
   /// Takes one case after the other until none is left or the user interrupts.
   void work(std::deque<std::size_t> queue, std::size_t jobs) {
-    std::vector<Desk> desks;
+    std::vector<WorkerSlot> slots;
     std::optional<Clock::time_point> interrupted_at;
     while (true) {
-      std::erase_if(desks, [](const Desk& desk) { return desk.worker->has_ended(); });
-      give_out(queue, desks, jobs);
+      std::erase_if(slots, [](const WorkerSlot& slot) { return slot.worker->has_ended(); });
+      dispatch(queue, slots, jobs);
       const bool is_busy =
-          std::any_of(desks.begin(), desks.end(), [](const Desk& desk) { return desk.index; });
+          std::any_of(slots.begin(), slots.end(), [](const WorkerSlot& slot) { return slot.index; });
       if (!is_busy && (queue.empty() || options_.context.stop.stop_requested())) return;
-      wait_for(desks);
-      for (Desk& desk : desks) {
-        if (desk.index) {
-          look_after(desk, interrupted_at);
+      wait_for(slots);
+      for (WorkerSlot& slot : slots) {
+        if (slot.index) {
+          poll_case(slot, interrupted_at);
         } else {
-          desk.worker->receive();  // notices its end
+          slot.worker->receive();  // notices its end
         }
       }
       if (options_.context.stop.stop_requested() && !interrupted_at) {
         interrupted_at = Clock::now();
-        for (const Desk& desk : desks) desk.worker->interrupt();
+        for (const WorkerSlot& slot : slots) slot.worker->interrupt();
       }
     }
   }
 
-  void wait_for(const std::vector<Desk>& desks) {
+  void wait_for(const std::vector<WorkerSlot>& slots) {
     std::vector<pollfd> watched;
-    watched.reserve(desks.size());
-    for (const Desk& desk : desks) watched.push_back({desk.worker->descriptor(), POLLIN, 0});
+    watched.reserve(slots.size());
+    for (const WorkerSlot& slot : slots) watched.push_back({slot.worker->descriptor(), POLLIN, 0});
     ::poll(watched.data(), watched.size(), 100);
     if (!options_.waiting) return;
     RunProgress progress{.done = done_, .total = plan_.cases.size()};
-    for (const Desk& desk : desks) {
-      if (desk.index) progress.running.push_back(plan_.cases[*desk.index].id);
+    for (const WorkerSlot& slot : slots) {
+      if (slot.index) progress.running.push_back(plan_.cases[*slot.index].id);
     }
     options_.waiting(progress);
   }
 
-  void look_after(Desk& desk, const std::optional<Clock::time_point>& interrupted_at) {
-    const std::size_t index = *desk.index;
-    const double seconds = seconds_since(desk.start);
-    if (const std::optional<std::string> answer = desk.worker->receive()) {
-      desk.index.reset();
+  void poll_case(WorkerSlot& slot, const std::optional<Clock::time_point>& interrupted_at) {
+    const std::size_t index = *slot.index;
+    const double seconds = seconds_since(slot.start);
+    if (const std::optional<std::string> answer = slot.worker->receive()) {
+      slot.index.reset();
       take(index, *answer, seconds);
-    } else if (desk.worker->has_ended()) {
-      desk.index.reset();
-      fail(index, "the process of this case " + desk.worker->how_it_ended(), seconds);
+    } else if (slot.worker->has_ended()) {
+      slot.index.reset();
+      fail(index, "the process of this case " + slot.worker->how_it_ended(), seconds);
     } else if (time_limit_ > 0.0 && seconds > time_limit_) {
-      desk.worker->end();
-      desk.index.reset();
+      slot.worker->end();
+      slot.index.reset();
       fail(index, fmt::format("ran past its time limit of {} s", time_limit_), seconds);
     } else if (interrupted_at && seconds_since(*interrupted_at) > options_.patience) {
-      desk.worker->end();
-      desk.index.reset();
+      slot.worker->end();
+      slot.index.reset();
     }
   }
 

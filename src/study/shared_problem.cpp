@@ -5,6 +5,16 @@
 
 namespace fw::study {
 
+std::string to_string(ReferenceArithmetic arithmetic) {
+  return arithmetic == ReferenceArithmetic::binary128 ? "binary128" : "binary64";
+}
+
+settings::Setting reference_setting(ReferenceArithmetic& arithmetic) {
+  return settings::choice(
+      "reference", arithmetic,
+      {{"binary128", ReferenceArithmetic::binary128}, {"binary64", ReferenceArithmetic::binary64}});
+}
+
 const analysis::ReferenceSolution& SharedProblem::reference(const RunContext& context) const {
   std::call_once(once_, [&] {
     const double end[] = {ivp().t1};

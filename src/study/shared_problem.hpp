@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <string>
 
 #include "analysis/reference/reference_solution.hpp"
 #include "study/plan.hpp"
@@ -13,6 +14,11 @@ enum class ReferenceArithmetic {
   binary128,  ///< certified, about 19 digits
   binary64,   ///< by two methods in double, about 9 digits: for systems too large for the other
 };
+
+/// "binary128", "binary64".
+std::string to_string(ReferenceArithmetic arithmetic);
+/// The key `reference`, which chooses it by these names.
+settings::Setting reference_setting(ReferenceArithmetic& arithmetic);
 
 /// A problem that several cases share, with its end state in closed form or as a certified reference, which
 /// the first case to need it computes for all. Safe to use from several threads.

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "study/result.hpp"
@@ -62,6 +63,18 @@ std::vector<SummaryCell> cells_of(const Row& values) {
   SummaryRow row;
   declare(row, values);
   return row.cells();
+}
+
+/// What a case ends with: a verdict, the reason for it, raw data and the row of its kind. The runner adds id
+/// and key.
+template <class Row>
+CaseResult case_result(Verdict verdict, std::string reason, std::vector<Column> columns, const Row& row) {
+  CaseResult result;
+  result.columns = std::move(columns);
+  result.summary = cells_of(row);
+  result.verdict = verdict;
+  result.reason = std::move(reason);
+  return result;
 }
 
 }  // namespace fw::study

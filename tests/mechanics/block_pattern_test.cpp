@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <thread>
 
 #include "core/error.hpp"
+#include "ode/first_order_jacobian.hpp"
 #include "random_model.hpp"
+#include "sparse/sparse_slots.hpp"
 
 namespace fw::mechanics {
 namespace {
@@ -59,6 +62,38 @@ TEST(BlockPattern, HasABlockPerParticleAndTwoPerPairOfNeighboursAndNoOther) {
   }
   EXPECT_EQ(entries(pattern.tangent()), tangent);
   EXPECT_EQ(entries(pattern.jacobian()), jacobian);
+}
+
+TEST(BlockPattern, PutsBlocksWhereTheFirstOrderJacobianHasThem) {
+  RandomModels random(20260605);
+  const MassSpringModel model = random.network(SpringLaw::hooke, 7, 15, true);
+  const std::vector<Cliques> cliques = assemble<ElementBatch>(model)->cliques();
+  const BlockPattern pattern(7, cliques);
+  const SparseMatrix K = pattern.tangent(), J = pattern.jacobian();
+  EXPECT_TRUE(same_structure(J, FirstOrderJacobian(K).pattern()));
+  for (int c = 0; c < 21; ++c) EXPECT_EQ(pattern.jacobian_unit(c), sparse::slot_of(J, c, 21 + c));
+  const auto expect_block = [&](BlockSlot slot, int i, int j) {
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const int row = 3 * i + a, column = 3 * j + b;
+        EXPECT_EQ(slot.first + b * slot.stride + a, sparse::slot_of(K, row, column));
+        const BlockSlot position = pattern.jacobian_position(slot, j);
+        EXPECT_EQ(position.first + b * position.stride + a, sparse::slot_of(J, 21 + row, column));
+        const BlockSlot velocity = pattern.jacobian_velocity(slot, j);
+        EXPECT_EQ(velocity.first + b * velocity.stride + a, sparse::slot_of(J, 21 + row, 21 + column));
+      }
+    }
+  };
+  for (int i = 0; i < 7; ++i) expect_block(pattern.diagonal(i), i, i);
+  const auto springs = static_cast<std::size_t>(
+      std::find_if(cliques.begin(), cliques.end(), [](const Cliques& batch) { return batch.arity == 2; }) -
+      cliques.begin());
+  ASSERT_LT(springs, cliques.size());
+  for (std::size_t e = 0; e < model.springs.size(); ++e) {
+    const std::array<int, 2> nodes{model.springs.first[e], model.springs.second[e]};
+    expect_block(pattern.slot(springs, e, 0, 1, nodes), nodes[0], nodes[1]);
+    expect_block(pattern.slot(springs, e, 1, 0, nodes), nodes[1], nodes[0]);
+  }
 }
 
 TEST(BlockPattern, StaysTheSameAndFillingTwiceGivesTheSameValues) {

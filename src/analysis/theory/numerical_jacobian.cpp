@@ -2,21 +2,18 @@
 
 #include <vector>
 
+#include "ode/complex_step.hpp"
+
 namespace fw::analysis {
 
 Matrix complex_step_jacobian(const OdeSystem& system, double t, ConstVectorRef y) {
-  constexpr double step = 1e-200;
-  const auto size = static_cast<std::size_t>(y.size());
-  std::vector<Complex> state(y.data(), y.data() + y.size()), slope(size);
   Matrix J(y.size(), y.size());
-  for (std::size_t j = 0; j < size; ++j) {
-    state[j].imag(step);
-    system.rhs(t, std::span<const Complex>(state), std::span<Complex>(slope));
-    state[j].imag(0.0);
-    for (std::size_t i = 0; i < size; ++i) {
-      J(static_cast<Index>(i), static_cast<Index>(j)) = slope[i].imag() / step;
-    }
-  }
+  fw::complex_step_jacobian(
+      y, static_cast<std::size_t>(y.size()), 0, y.size(),
+      [&](const std::vector<Complex>& state, std::vector<Complex>& slope) {
+        system.rhs(t, std::span<const Complex>(state), std::span<Complex>(slope));
+      },
+      [&J](Index i, Index j, double value) { J(i, j) = value; });
   return J;
 }
 

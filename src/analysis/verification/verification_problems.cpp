@@ -99,13 +99,12 @@ Ivp network(bool is_damped, bool is_free) {
   }
   for (int e = 0; e < 11; ++e) {
     const int i = edges[e][0], j = edges[e][1];
-    model.springs.first.push_back(i);
-    model.springs.second.push_back(j);
     const double length = (ivp.y0.segment<3>(3 * j) - ivp.y0.segment<3>(3 * i)).norm();
     // Two sorts of springs, so that schemes which split stiff from soft ones have something to split.
-    model.springs.stiffness.push_back(e % 3 == 0 ? 24.0 : 6.0 + 0.5 * e);
-    model.springs.damping.push_back(is_damped ? 0.125 + 0.0625 * (e % 4) : 0.0);
-    model.springs.rest_length.push_back((0.9 + 0.03 * (e % 6)) * length);
+    model.springs.add(i, j,
+                      {.stiffness = e % 3 == 0 ? 24.0 : 6.0 + 0.5 * e,
+                       .damping = is_damped ? 0.125 + 0.0625 * (e % 4) : 0.0,
+                       .rest_length = (0.9 + 0.03 * (e % 6)) * length});
   }
   if (!is_free) {
     model.gravity = {0.5, -0.25, -2.0};

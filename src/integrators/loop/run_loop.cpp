@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "core/error.hpp"
+#include "core/work_counters.hpp"
 #include "integrators/loop/hermite_interpolant.hpp"
 #include "integrators/loop/run_checks.hpp"
 
@@ -16,15 +17,7 @@ namespace {
 constexpr std::uint64_t most_steps_without_progress = 20;
 
 void serialise(StateArchive& archive, Work& work) {
-  archive.visit("right-hand sides", work.rhs_evaluations);
-  archive.visit("Jacobians", work.jacobian_evaluations);
-  archive.visit("Jacobian products", work.jacobian_products);
-  archive.visit("factorisations", work.factorisations);
-  archive.visit("linear solves", work.linear_solves);
-  archive.visit("linear iterations", work.linear_iterations);
-  archive.visit("Newton iterations", work.newton_iterations);
-  archive.visit("accepted steps", work.accepted_steps);
-  archive.visit("rejected steps", work.rejected_steps);
+  for (const WorkCounter& counter : work_counters) archive.visit(counter.words, work.*counter.count);
   archive.visit("seconds", work.seconds);
 }
 

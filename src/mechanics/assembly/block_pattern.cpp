@@ -84,6 +84,7 @@ BlockPattern::BlockPattern(int particles, const std::vector<Cliques>& cliques, s
   neighbours_.erase(end_of_kept, neighbours_.end());
 
   diagonal_.resize(n);
+  jacobian_slots_ = FirstOrderSlots(3 * particles, static_cast<int>(tangent_nonzeros()));
   for (int i = 0; i < particles; ++i) diagonal_[size(i)] = slot_of(i, i);
   off_diagonal_.resize(cliques.size());
   for (std::size_t k = 0; k < cliques.size(); ++k) {
@@ -107,10 +108,9 @@ int BlockPattern::slot_of(int row, int column) const {
   return 9 * start_[size(column)] + 3 * static_cast<int>(position);
 }
 
-Index BlockPattern::jacobian_unit(Index c) const {
-  const auto j = static_cast<int>(c / 3);
-  const BlockSlot slot = jacobian_velocity({9 * start_[size(j)], stride(j)}, j);
-  return slot.first + (c % 3) * slot.stride - 1;
+int BlockPattern::jacobian_unit(int c) const {
+  const int j = c / 3;
+  return jacobian_slots_.unit(9 * start_[size(j)] + (c % 3) * stride(j), c);
 }
 
 SparseMatrix BlockPattern::tangent() const {
@@ -134,24 +134,7 @@ SparseMatrix BlockPattern::tangent() const {
 }
 
 SparseMatrix BlockPattern::jacobian() const {
-  const auto n = static_cast<int>(3 * particles());
-  SparseMatrix matrix(2 * n, 2 * n);
-  matrix.resizeNonZeros(jacobian_nonzeros());
-  int* outer = matrix.outerIndexPtr();
-  int* inner = matrix.innerIndexPtr();
-  *outer++ = 0;
-  for (int column = 0; column < 2 * n; ++column) {
-    const int c = column % n;
-    const int j = c / 3;
-    *inner++ = c;
-    for (int p = start_[size(j)]; p < start_[size(j) + 1]; ++p) {
-      for (int a = 0; a < 3; ++a) *inner++ = n + 3 * neighbours_[size(p)] + a;
-    }
-    outer[0] = outer[-1] + stride(j) + 1;
-    ++outer;
-  }
-  matrix.coeffs().setZero();
-  return matrix;
+  return FirstOrderJacobian(tangent()).pattern();
 }
 
 void BlockPattern::require_tangent(const SparseMatrix& matrix, std::string_view name) const {
@@ -159,7 +142,7 @@ void BlockPattern::require_tangent(const SparseMatrix& matrix, std::string_view 
 }
 
 void BlockPattern::require_jacobian(const SparseMatrix& matrix, std::string_view name) const {
-  require_entries(matrix, 6 * particles(), jacobian_nonzeros(), name);
+  require_entries(matrix, 6 * particles(), jacobian_slots_.entries(), name);
 }
 
 }  // namespace fw::mechanics

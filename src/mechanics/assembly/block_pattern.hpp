@@ -8,6 +8,7 @@
 
 #include "core/types.hpp"
 #include "mechanics/elements/central_force_tangent.hpp"
+#include "ode/first_order_jacobian.hpp"
 
 namespace fw::mechanics {
 
@@ -28,10 +29,8 @@ struct Cliques {
 /// of neighbours: particles that share an element), with the place of every element's blocks worked out
 /// beforehand: filling a matrix is then one walk over the elements, without a search.
 ///
-/// In compressed columns the three columns of particle j have the same 3·(1 + neighbours) rows. The Jacobian
-/// of the first-order system, [[0, I], [M⁻¹K, M⁻¹D]], has the same columns twice, each with one entry above
-/// (the diagonal on the left, the unit entry on the right), so its slots follow from those of K and need no
-/// memory.
+/// In compressed columns the three columns of particle j have the same 3·(1 + neighbours) rows. The slots of
+/// the first-order system's Jacobian follow from those of K (`FirstOrderSlots`) and need no memory.
 ///
 /// Memory: 2 integers per particle, 4 per spring; 2 N (N − 1) per element with N nodes.
 class BlockPattern {
@@ -58,7 +57,6 @@ class BlockPattern {
   void require_jacobian(const SparseMatrix& matrix, std::string_view name) const;
 
   Index tangent_nonzeros() const { return 9 * static_cast<Index>(neighbours_.size()); }
-  Index jacobian_nonzeros() const { return 2 * (tangent_nonzeros() + 3 * particles()); }
   Index particles() const { return static_cast<Index>(diagonal_.size()); }
 
   /// Block (i, i) of a tangent matrix.
@@ -73,25 +71,32 @@ class BlockPattern {
 
   /// The block M⁻¹K of the Jacobian, from the slot of K in block column j.
   BlockSlot jacobian_position(BlockSlot slot, int j) const {
-    return {slot.first + 3 * j + 1, slot.stride + 1};
+    return moved(slot, j, [this](int k, int c) { return jacobian_slots_.stiffness(k, c); });
   }
   /// The block M⁻¹D of the Jacobian, from the slot of D in block column j.
   BlockSlot jacobian_velocity(BlockSlot slot, int j) const {
-    return {static_cast<int>(tangent_nonzeros() + 3 * particles()) + slot.first + 3 * j + 1, slot.stride + 1};
+    return moved(slot, j, [this](int k, int c) { return jacobian_slots_.damping(k, c); });
   }
   /// Entry (c, 3n + c) of the Jacobian, which is 1 where ẋ = v.
-  Index jacobian_unit(Index c) const;
+  int jacobian_unit(int c) const;
 
  private:
   static std::size_t size(int i) { return static_cast<std::size_t>(i); }
   int degree(int i) const { return start_[size(i) + 1] - start_[size(i)]; }
   int stride(int i) const { return 3 * degree(i); }
   int slot_of(int row, int column) const;
+  /// A block of the tangents in block column j where `slot_in_jacobian(slot, column)` puts its entries.
+  template <class Slot>
+  static BlockSlot moved(BlockSlot slot, int j, Slot slot_in_jacobian) {
+    const int first = slot_in_jacobian(slot.first, 3 * j);
+    return {first, slot_in_jacobian(slot.first + slot.stride, 3 * j + 1) - first};
+  }
 
   std::vector<int> start_;       ///< first neighbour of each particle in `neighbours_`
   std::vector<int> neighbours_;  ///< ascending, each particle among its own
   std::vector<int> diagonal_;
   std::vector<std::vector<int>> off_diagonal_;  ///< per batch N (N − 1) slots per element, row by row
+  FirstOrderSlots jacobian_slots_;
   std::uint64_t revision_ = 0;
 };
 

@@ -8,6 +8,13 @@
 
 namespace fw::mechanics {
 
+/// The numbers of one spring; see `Springs` for their units.
+struct SpringParameters {
+  double stiffness = 0.0;    ///< k_s
+  double damping = 0.0;      ///< k_d
+  double rest_length = 0.0;  ///< l₀
+};
+
 /// Springs one after the other that share a law.
 struct SpringGroup {
   std::string name;                  ///< for people and files; may be empty
@@ -29,6 +36,15 @@ struct Springs {
   std::vector<SpringGroup> groups{};
 
   std::size_t size() const { return first.size(); }
+
+  /// Adds a spring between particles i and j. The groups, if there are any, stay as they are.
+  void add(int i, int j, const SpringParameters& spring) {
+    first.push_back(i);
+    second.push_back(j);
+    stiffness.push_back(spring.stiffness);
+    damping.push_back(spring.damping);
+    rest_length.push_back(spring.rest_length);
+  }
 
   /// The law of spring e.
   SpringLaw law_of(std::size_t e) const {
@@ -53,13 +69,6 @@ struct Springs {
       begin += group.size;
     }
   }
-};
-
-/// The numbers of one spring; see `Springs` for their units.
-struct SpringParameters {
-  double stiffness = 0.0;    ///< k_s
-  double damping = 0.0;      ///< k_d
-  double rest_length = 0.0;  ///< l₀
 };
 
 /// The numbers of spring `e`.

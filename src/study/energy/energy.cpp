@@ -158,12 +158,7 @@ class EnergyCase {
     const EnergyVerdict judged =
         judge_energy(problem_.watched, integrator_.info(),
                      theory_.has_coefficients && integrator_.info().is_symplectic, runs_, exponents_);
-    CaseResult result;
-    result.verdict = judged.verdict;
-    result.reason = judged.reason;
-    add_columns(result);
-    add_summary(result);
-    return result;
+    return case_result(judged.verdict, judged.reason, columns(), row());
   }
 
  private:
@@ -174,11 +169,12 @@ class EnergyCase {
     return values;
   }
 
-  void add_columns(CaseResult& result) const {
+  std::vector<Column> columns() const {
+    std::vector<Column> columns;
     const std::string& unit = problem_.watched.unit;
     const std::string rate = unit == "1" ? "1/s" : unit + "/s";
     const auto add = [&](const char* name, const std::string& column_unit, auto value) {
-      result.columns.push_back({name, column_unit, of_runs(value), {}, {}});
+      columns.push_back({name, column_unit, of_runs(value), {}, {}});
     };
     add("step", "s", [](const EnergyRun& run) { return run.step; });
     std::vector<std::int64_t> taken;
@@ -187,11 +183,11 @@ class EnergyCase {
       taken.push_back(static_cast<std::int64_t>(run.seen->steps_taken()));
       statuses.emplace_back(to_string(run.status.code));
     }
-    result.columns.push_back({"steps_taken", "1", taken, {}, {}});
-    result.columns.push_back({"status", "", statuses, {}, {}});
+    columns.push_back({"steps_taken", "1", taken, {}, {}});
+    columns.push_back({"status", "", statuses, {}, {}});
     add("end_time", "s", [](const EnergyRun& run) { return run.end_time; });
     add("energy_start", unit, [](const EnergyRun& run) { return run.seen->start(); });
-    result.columns.back().attributes = {{"quantity", problem_.watched.quantity}};
+    columns.back().attributes = {{"quantity", problem_.watched.quantity}};
     add("energy_scale", unit, [](const EnergyRun& run) { return run.seen->scale(); });
     const auto drift = [](double analysis::Drift::*member) {
       return [member](const EnergyRun& run) { return run.drift.valid ? run.drift.*member : none; };
@@ -205,15 +201,16 @@ class EnergyCase {
     add("correlation", "1", [](const EnergyRun& run) { return run.seen->change().correlation(); });
     add("growth", "1", [](const EnergyRun& run) { return std::expm1(run.growth); });
     add("predicted_growth", "1", [](const EnergyRun& run) { return std::expm1(run.predicted_growth); });
-    add_bins(result);
+    add_bins(columns);
+    return columns;
   }
 
-  void add_bins(CaseResult& result) const {
+  void add_bins(std::vector<Column>& columns) const {
     const std::string& unit = problem_.watched.unit;
     const auto add = [&](const char* name, const std::string& column_unit, auto row) {
       BinTable table;
       for (const EnergyRun& run : runs_) table.add_row(row(*run.seen));
-      result.columns.push_back(table.column(name, column_unit));
+      columns.push_back(table.column(name, column_unit));
     };
     add("bin_time", "s", [](const EnergyObserver& seen) { return seen.change().times(); });
     add("change_least", unit, [](const EnergyObserver& seen) { return seen.change().least(); });
@@ -261,12 +258,12 @@ class EnergyCase {
     return law.valid ? law.exponent : none;
   }
 
-  void add_summary(CaseResult& result) const {
+  Row row() const {
     const EnergyRun& first = runs_.front();
     const auto scale = [](const EnergyObserver& seen) { return seen.scale(); };
     const double balance =
         first.seen->balance().empty() ? none : first.seen->balance().back() / first.seen->scale();
-    result.summary = cells_of(Row{
+    return {
         .problem = problem_.entry.label,
         .method = call_,
         .step = first.step,
@@ -291,7 +288,7 @@ class EnergyCase {
         .balance = balance,
         .balance_exponent = exponents_.balance.value,
         .balance_exponent_low = exponents_.balance.low,
-        .balance_exponent_high = exponents_.balance.high});
+        .balance_exponent_high = exponents_.balance.high};
   }
 
   const WatchedEntry& problem_;
@@ -333,9 +330,7 @@ void plan_energy(const Spec& study, const StudyInput& input, Plan& plan) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = catalog.method(call);
       const MethodInfo& info = integrator->info();
-      std::string why = why_not_applicable(info, *ivp.system);
-      if (!info.has_fixed_step) why = "it chooses its own steps, expected a method with a fixed step";
-      if (!why.empty()) {
+      if (const std::string why = why_no_constant_steps(info, *ivp.system); !why.empty()) {
         spec.fail("methods", {i},
                   fmt::format("\"{}\" (problem \"{}\"): {}", call, problem->entry.label, why));
       }

@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "core/error.hpp"
 #include "settings/identity_text.hpp"
@@ -13,31 +11,16 @@
 #include "study/jacobian/jacobian_derivatives.hpp"
 #include "study/jacobian/jacobian_row.hpp"
 #include "study/jacobian/jacobian_runs.hpp"
-#include "study/problem_spec.hpp"
+#include "study/jacobian/jacobian_spec.hpp"
+#include "study/parameter_values.hpp"
 
 namespace fw::study {
 
 namespace {
 
-using settings::Archive;
-using settings::setting;
-
-/// What `--quick` leaves: entries of each list, samples of each subject.
-struct QuickRule {
-  bool is_on = false;
-  std::int64_t points = 5;
-  std::int64_t samples = 20;
-};
-
 /// With --quick `rule.points` entries, the first and the last among them.
-std::vector<double> thinned(std::vector<double> values, const QuickRule& rule) {
-  const auto size = static_cast<std::int64_t>(values.size());
-  if (!rule.is_on || size <= rule.points) return values;
-  std::vector<double> kept;
-  for (std::int64_t k = 0; k < rule.points; ++k) {
-    kept.push_back(values[static_cast<std::size_t>(k * (size - 1) / (rule.points - 1))]);
-  }
-  return kept;
+std::vector<double> thinned(const std::vector<double>& values, const QuickRule& rule) {
+  return rule.is_on ? thinned_out(values, rule.points) : values;
 }
 
 struct Springs {
@@ -50,162 +33,6 @@ const std::vector<Springs>& spring_laws() {
   static const std::vector<Springs> all = {
       {SpringLaw::hooke, "hooke"}, {SpringLaw::strain, "strain"}, {SpringLaw::tension_only, "tension_only"}};
   return all;
-}
-
-/// The keys of [springs].
-struct SpringSpec {
-  std::vector<std::string> laws = {"hooke", "strain", "tension_only"};
-  std::vector<std::string> dampers = {"without", "with"};
-  std::int64_t samples = 200;
-};
-
-void declare(Archive& a, SpringSpec& springs) {
-  a(setting("laws", springs.laws)
-        .not_empty()
-        .choices({"hooke", "strain", "tension_only"})
-        .doc("of random single springs"));
-  a(setting("dampers", springs.dampers)
-        .not_empty()
-        .choices({"without", "with"})
-        .doc("springs without and with dampers"));
-  a(setting("samples", springs.samples).integers(1, 100'000).doc("springs of each law"));
-}
-
-/// The keys of [derivatives].
-struct DerivativeSpec {
-  DerivativeSettings settings;
-  std::vector<std::string> formulas = derivative_formulas();
-  std::int64_t samples = 5;   ///< of each problem
-  double displacement = 0.1;  ///< in typical lengths
-  bool pattern = true;
-};
-
-void declare(Archive& a, DerivativeSpec& d) {
-  DerivativeSettings& s = d.settings;
-  a(setting("formulas", d.formulas)
-        .not_empty()
-        .choices(derivative_formulas())
-        .doc("`printed_e1`, `printed_e2` for undamped Hooke springs of `[springs]` only"));
-  a(setting("tolerance", s.tolerance)
-        .unit("1")
-        .positive()
-        .doc("largest relative deviation of an analytic derivative that holds"));
-  a(setting("slope_tolerance", s.slope_tolerance)
-        .unit("1")
-        .positive()
-        .doc("largest \\|observed − predicted slope\\| of a difference that holds"));
-  a(setting("largest_increment", s.largest_increment)
-        .unit("typical length")
-        .between(1e-20, 1e3)
-        .doc("of differences"));
-  a(setting("smallest_increment", s.smallest_increment)
-        .unit("typical length")
-        .between(1e-20, 1e3)
-        .doc("of differences"));
-  a(setting("per_decade", s.per_decade).integers(1, 100).doc("increments"));
-  a(setting("samples", d.samples).integers(1, 100'000).doc("states of each problem"));
-  a(setting("displacement", d.displacement)
-        .unit("typical length")
-        .nonnegative()
-        .doc("of each component of the initial state, at random: nothing is at rest or straight then"));
-  a(setting("pattern", d.pattern).selects_cases().doc("the part `pattern` for each problem"));
-}
-
-/// The state that [definiteness] and [runs] begin with; lengths in the typical length of the problem's
-/// springs.
-struct SqueezeSpec {
-  double closing_rate = 0.0, displacement = 0.05, speed = 0.0;
-
-  Squeeze squeeze(std::int64_t seed) const {
-    return {.closing_rate = closing_rate, .displacement = displacement, .speed = speed, .seed = seed};
-  }
-};
-
-void declare(Archive& a, SqueezeSpec& squeeze) {
-  a(setting("closing_rate", squeeze.closing_rate)
-        .unit("1/s")
-        .doc("velocities −rate·(x − centre): what dampers see"));
-  a(setting("displacement", squeeze.displacement)
-        .unit("typical length")
-        .nonnegative()
-        .doc("random, before the compression: buckling needs a direction"));
-  a(setting("speed", squeeze.speed)
-        .unit("typical length/s")
-        .nonnegative()
-        .doc("largest random velocity of a moving component, added"));
-}
-
-/// The keys of [definiteness].
-struct DefinitenessSpec {
-  std::vector<double> compressions, steps;
-  SqueezeSpec start;
-  std::vector<std::string> tangents = tangent_model_names();
-};
-
-void declare_squeezed(Archive& a, std::vector<double>& compressions, std::vector<double>& steps) {
-  a(setting("compressions", compressions)
-        .unit("1")
-        .required()
-        .not_empty()
-        .positive()
-        .or_sequence()
-        .doc("factors of all distances from the centre"));
-  a(setting("steps", steps).unit("s").required().not_empty().positive().or_sequence().doc("h"));
-}
-
-void declare(Archive& a, DefinitenessSpec& spec) {
-  declare_squeezed(a, spec.compressions, spec.steps);
-  declare(a, spec.start);
-  a(setting("tangents", spec.tangents).not_empty().choices(tangent_model_names()).doc("models of K"));
-}
-
-/// The keys of [runs].
-struct RunsSpec {
-  std::vector<double> compressions, steps;
-  SqueezeSpec start;
-  std::vector<std::string> methods;
-};
-
-void declare(Archive& a, RunsSpec& spec) {
-  declare_squeezed(a, spec.compressions, spec.steps);
-  declare(a, spec.start);
-  a(methods_setting(spec.methods));
-}
-
-struct Spec {
-  std::optional<SpringSpec> springs;
-  std::optional<DerivativeSpec> derivatives;
-  std::optional<DefinitenessSpec> definiteness;
-  std::optional<RunsSpec> runs;
-  std::vector<ProblemSpec> problems;
-  QuickRule rule;
-};
-
-void declare(Archive& a, Spec& spec) {
-  a.optional_section({"springs", "Random single springs."}, spec.springs);
-  a.optional_section(
-      {"derivatives", "Derivatives by formulas against complex steps, of springs and problems."},
-      spec.derivatives);
-  // Not asked for, the section stays out of the resolved specification: there it would be asked for.
-  if (!a.is_description() && spec.springs && !spec.derivatives) {
-    spec.derivatives.emplace();
-    a.section({"derivatives"}, *spec.derivatives);
-  }
-  a.optional_section({"definiteness",
-                      "Definiteness of K and of the matrix of implicit steps over compression "
-                      "and step."},
-                     spec.definiteness);
-  a.optional_section({"runs", "Runs from compressed springs."}, spec.runs);
-  a.sections({.name = "problem",
-              .doc = "A problem of the catalogue, or a scene; not needed with [springs].",
-              .is_required = !a.is_description() && !spec.springs},
-             spec.problems);
-  a.quick_section([&] {
-    a(setting("points", spec.rule.points)
-          .integers(2, 1000)
-          .doc("entries of each list of compressions and steps, the first and last among them"));
-    a(setting("samples", spec.rule.samples).integers(1, 100'000).doc("at most, of each subject"));
-  });
 }
 
 bool is_printed(const std::string& formula) {
@@ -261,16 +88,16 @@ void plan_problem_derivatives(const StudyProblem& problem, const DerivativeSpec&
        .run = [subject](const RunContext& context) { return run_pattern(subject, context); }});
 }
 
-Squeeze scaled(Squeeze squeeze, const StudyProblem& problem) {
+Compression scaled(Compression start, const StudyProblem& problem) {
   const double length = typical_length(*problem.problem.ivp.system);
-  squeeze.displacement *= length;
-  squeeze.speed *= length;
-  return squeeze;
+  start.displacement *= length;
+  start.speed *= length;
+  return start;
 }
 
-std::string squeeze_text(const Squeeze& squeeze) {
-  return fmt::format("closing_rate = {}\ndisplacement = {}\nspeed = {}\nseed = {}\n", squeeze.closing_rate,
-                     squeeze.displacement, squeeze.speed, squeeze.seed);
+std::string compression_text(const Compression& start) {
+  return fmt::format("closing_rate = {}\ndisplacement = {}\nspeed = {}\nseed = {}\n", start.closing_rate,
+                     start.displacement, start.speed, start.seed);
 }
 
 void require_springs(const CheckedTable& spec, const std::string& section, const StudyProblem& problem) {
@@ -301,19 +128,19 @@ void plan_definiteness(const DefinitenessSpec& given, const CheckedTable& spec,
   DefinitenessSettings settings;
   settings.compressions = thinned(given.compressions, rule);
   settings.steps = thinned(given.steps, rule);
-  settings.squeeze = given.start.squeeze(plan.seed);
+  settings.start = given.start.with_seed(plan.seed);
   const std::vector<std::string>& models = given.tangents;
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "definiteness", problem);
     require_small(spec, "definiteness", problem,
                   problem.problem.ivp.system->second_order()->degrees_of_freedom(), most_degrees_of_freedom);
     DefinitenessSettings own = settings;
-    own.squeeze = scaled(settings.squeeze, problem);
+    own.start = scaled(settings.start, problem);
     for (const std::string& model : models) {
       plan.cases.push_back(
           {.id = group_name(problem.label + "-" + model),
            .identity = fmt::format("jacobian definiteness\n{}{}compressions = {}\nsteps = {}\ntangent = {}\n",
-                                   problem.identity, squeeze_text(own.squeeze),
+                                   problem.identity, compression_text(own.start),
                                    fmt::join(own.compressions, " "), fmt::join(own.steps, " "), model),
            .run = [problem, model, own](const RunContext& context) {
              return run_definiteness(problem, model, own, context);
@@ -330,7 +157,7 @@ void plan_runs(const RunsSpec& given, const StudyInput& input, const std::vector
   CompressedRunSettings settings;
   settings.compressions = thinned(given.compressions, rule);
   settings.steps = thinned(given.steps, rule);
-  settings.squeeze = given.start.squeeze(plan.seed);
+  settings.start = given.start.with_seed(plan.seed);
   const std::vector<std::string>& methods = checked_methods(given.methods, table, catalog);
   for (const StudyProblem& problem : problems) {
     require_springs(spec, "runs", problem);
@@ -343,7 +170,7 @@ void plan_runs(const RunsSpec& given, const StudyInput& input, const std::vector
       }
     }
     CompressedRunSettings own = settings;
-    own.squeeze = scaled(settings.squeeze, problem);
+    own.start = scaled(settings.start, problem);
     for (std::size_t k = 0; k < methods.size(); ++k) {
       const std::shared_ptr<const Integrator> integrator = catalog.method(methods[k]);
       if (integrator->info().is_multistep || !integrator->info().has_fixed_step) {
@@ -353,7 +180,7 @@ void plan_runs(const RunsSpec& given, const StudyInput& input, const std::vector
         plan.cases.push_back(
             {.id = group_name(fmt::format("{}-{}-L{:.6g}", problem.label, methods[k], compression)),
              .identity = fmt::format("jacobian runs\n{}{}compression = {}\nsteps = {}\nmethod = {}\n",
-                                     problem.identity, squeeze_text(own.squeeze), compression,
+                                     problem.identity, compression_text(own.start), compression,
                                      fmt::join(own.steps, " "), methods[k]),
              .run = [problem, call = methods[k], integrator, compression, own](const RunContext& context) {
                return run_compressed(problem, call, *integrator, compression, own, context);
@@ -369,7 +196,7 @@ void check(const DerivativeSettings& settings, const CheckedTable& table) {
                                                settings.smallest_increment, settings.largest_increment));
 }
 
-void plan_jacobian(const Spec& study, const StudyInput& input, Plan& plan) {
+void plan_jacobian(const JacobianSpec& study, const StudyInput& input, Plan& plan) {
   const CheckedTable& spec = input.file;
   QuickRule rule = study.rule;
   rule.is_on = input.is_quick;
@@ -396,7 +223,7 @@ void plan_jacobian(const Spec& study, const StudyInput& input, Plan& plan) {
 }  // namespace
 
 StudyKind jacobian_kind() {
-  return declared_kind<Spec>(
+  return declared_kind<JacobianSpec>(
       {.name = "jacobian",
        .title = "Derivatives of the forces and their definiteness",
        .description =

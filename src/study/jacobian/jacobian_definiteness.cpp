@@ -152,9 +152,9 @@ class DefinitenessCase {
   }
 
   void look_at(double compression) {
-    Squeeze squeeze = settings_.squeeze;
-    squeeze.compression = compression;
-    const Ivp ivp = squeezed(problem_.problem.ivp, squeeze);
+    Compression start = settings_.start;
+    start.compression = compression;
+    const Ivp ivp = compressed(problem_.problem.ivp, start);
     const SecondOrderSystem& system = *ivp.system->second_order();
     const Tangents tangent = tangents(ivp, model_);
     stiffness_eigenvalue_.push_back(analysis::smallest_eigenvalue(-tangent.K));

@@ -14,7 +14,7 @@ namespace fw::study {
 struct DefinitenessSettings {
   std::vector<double> compressions;  ///< factors of all distances
   std::vector<double> steps;         ///< h [s]
-  Squeeze squeeze;                   ///< `compression` is one of the list
+  Compression start;                 ///< `compression` is one of the list
 };
 
 /// "exact", "tensile_geometric_term", "psd_projection".
@@ -22,7 +22,7 @@ const std::vector<std::string>& tangent_model_names();
 TangentModel tangent_model(const std::string& name);
 
 /// K and the matrix A = M − h D − h² K of an implicit step, symmetrised and on the moving degrees of freedom,
-/// with one tangent model, from the squeezed state of a problem over compression and h: their smallest
+/// with one tangent model, from the compressed state of a problem over compression and h: their smallest
 /// eigenvalues, the step from which A is indefinite, and what Newton's iteration (one step of implicit Euler)
 /// and conjugate gradients (the system of the linearised step) make of it. Verdict: A is definite up to the
 /// step 1/μ that the spectrum predicts

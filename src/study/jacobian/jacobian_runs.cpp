@@ -50,9 +50,9 @@ constexpr double unseen_gain = 1e-9;
 CaseResult run_compressed(const StudyProblem& problem, const std::string& call, const Integrator& integrator,
                           double compression, const CompressedRunSettings& settings,
                           const RunContext& context) {
-  Squeeze squeeze = settings.squeeze;
-  squeeze.compression = compression;
-  const Ivp ivp = squeezed(problem.problem.ivp, squeeze);
+  Compression start = settings.start;
+  start.compression = compression;
+  const Ivp ivp = compressed(problem.problem.ivp, start);
   const auto& system = dynamic_cast<const MassSpringSystem&>(*ivp.system);
   JacobianRow row{.subject = problem.label, .part = "runs", .variant = call};
   row.unknowns = system.degrees_of_freedom();

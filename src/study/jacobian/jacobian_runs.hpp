@@ -14,10 +14,10 @@ namespace fw::study {
 struct CompressedRunSettings {
   std::vector<double> steps;         ///< h [s]
   std::vector<double> compressions;  ///< factors of all distances
-  Squeeze squeeze;                   ///< `compression` is one of the list
+  Compression start;                 ///< `compression` is one of the list
 };
 
-/// One method from the squeezed state of a mass-spring problem over the step: whether it reaches the end, and
+/// One method from the compressed state of a mass-spring problem over the step: whether it reaches the end, and
 /// the largest energy on the way. The lecture claims "unconditionally stable" of implicit Euler [Zachmann
 /// 2011, S22, S32; erratum E5], for which the exact motion is the measure: its energy never rises. There is
 /// no theory that predicts a number, so that there is no verdict.

@@ -81,23 +81,23 @@ double typical_length(const OdeSystem& system) {
   return mean > 0.0 ? mean : 1.0;
 }
 
-Ivp squeezed(Ivp ivp, const Squeeze& squeeze) {
+Ivp compressed(Ivp ivp, const Compression& start) {
   const SecondOrderSystem& system = *ivp.system->second_order();
   const Index n = system.degrees_of_freedom();
-  RandomNumbers random(squeeze.seed);
+  RandomNumbers random(start.seed);
   const Index dimensions = n % 3 == 0 ? 3 : 1;
   Vector centre = Vector::Zero(dimensions);
   for (Index c = 0; c < n; ++c) {
-    const double change = random.uniform(-squeeze.displacement, squeeze.displacement);
+    const double change = random.uniform(-start.displacement, start.displacement);
     if (system.fixed()[static_cast<std::size_t>(c)] == 0) ivp.y0[c] += change;
     centre[c % dimensions] += ivp.y0[c] * static_cast<double>(dimensions) / static_cast<double>(n);
   }
   for (Index c = 0; c < n; ++c) {
-    const double position = squeeze.compression * (ivp.y0[c] - centre[c % dimensions]);
+    const double position = start.compression * (ivp.y0[c] - centre[c % dimensions]);
     ivp.y0[c] = centre[c % dimensions] + position;
-    const double added = random.uniform(-squeeze.speed, squeeze.speed);
+    const double added = random.uniform(-start.speed, start.speed);
     const bool is_fixed = system.fixed()[static_cast<std::size_t>(c)] != 0;
-    ivp.y0[n + c] = is_fixed ? 0.0 : added - squeeze.closing_rate * position;
+    ivp.y0[n + c] = is_fixed ? 0.0 : added - start.closing_rate * position;
   }
   ivp.y0_extended.clear();
   return ivp;

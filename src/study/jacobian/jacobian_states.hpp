@@ -36,17 +36,17 @@ std::vector<JacobianSample> displaced_states(const Ivp& ivp, std::int64_t count,
 /// The mean rest length [m] of a mass-spring system's springs; 1 of any other system.
 double typical_length(const OdeSystem& system);
 
-/// How an initial state is squeezed together.
-struct Squeeze {
+/// How an initial state is compressed.
+struct Compression {
   double compression = 1.0;   ///< factor of all distances from the centre of the positions
   double closing_rate = 0.0;  ///< [1/s]: velocities −rate·(x − centre)
-  double displacement = 0.0;  ///< [m]: largest random displacement of a moving component, before squeezing
+  double displacement = 0.0;  ///< [m]: largest random displacement of a moving component, before compressing
   double speed = 0.0;         ///< [m/s]: largest random velocity of a moving component, added
   std::int64_t seed = 0;
 };
 
-/// The problem from the squeezed state. Fixed particles are squeezed as well, and stand still.
-Ivp squeezed(Ivp ivp, const Squeeze& squeeze);
+/// The problem from the compressed state. Fixed particles are compressed as well, and stand still.
+Ivp compressed(Ivp ivp, const Compression& start);
 
 /// L/l₀ of the most compressed spring; NaN without springs.
 double least_length_ratio(const OdeSystem& system, ConstVectorRef y);

@@ -11,7 +11,9 @@
 #include "analysis/fit/order_fit.hpp"
 #include "core/error.hpp"
 #include "settings/identity_text.hpp"
-#include "study/measure/error_norms.hpp"
+#include "study/measure/error_meter.hpp"
+#include "study/measure/step_ladder.hpp"
+#include "study/measure/timed_run.hpp"
 #include "study/problem_spec.hpp"
 #include "study/shared_problem.hpp"
 
@@ -75,12 +77,8 @@ struct Level {
   Work work;
 };
 
-/// Rounding of double arithmetic relative to the solution's scale; the fit recognises what grows above it.
-constexpr double rounding_floor = 2e-13;
 /// Local slopes in the fit differ from the finest ones by no more than half of what a verdict tolerates.
 constexpr double slope_tolerance = 0.05;
-/// A reference has to be this much better than every error that is reported.
-constexpr double reference_margin = 0.01;
 
 /// A fitted order in the summary.
 struct RowFit {
@@ -136,15 +134,16 @@ class ConvergenceCase {
     if (const std::string why = why_not_applicable(integrator_.info(), *ivp().system); !why.empty()) {
       return conclude(Verdict::not_applicable, why);
     }
-    if (!find_reference()) return conclude(Verdict::not_applicable, reference_.status.describe());
-    std::optional<std::int64_t> coarsest = find_coarsest();
-    if (!coarsest) {
+    meter_.emplace(shared_, context_);
+    if (!meter_->status().ok()) return conclude(Verdict::not_applicable, meter_->status().describe());
+    const DoubledSteps<Level> coarsest = find_coarsest();
+    if (!coarsest.run) {
       return conclude(Verdict::fails,
                       fmt::format("no step down to {:.3g} gives a relative error below {:g}: {}",
                                   length() / static_cast<double>(settings_.max_steps), settings_.start_error,
                                   last_status_.describe()));
     }
-    refine(*coarsest);
+    refine(coarsest.steps);
     return judge();
   }
 
@@ -153,71 +152,48 @@ class ConvergenceCase {
   double length() const { return ivp().t1 - ivp().t0; }
   bool is_second_order() const { return ivp().system->second_order() != nullptr; }
 
-  int expected_order() const { return order_on(integrator_.info(), *ivp().system); }
+  /// Ones where there is no reference.
+  StateScale scale() const { return meter_ ? meter_->scale() : StateScale{}; }
 
-  bool find_reference() {
-    reference_ = shared_.reference(context_);
-    if (!reference_.status.ok() || reference_.states.empty()) return false;
-    scale_ = measure_scale(ivp(), reference_.states.front());
-    return true;
-  }
+  int expected_order() const { return order_on(integrator_.info(), *ivp().system); }
 
   /// Runs `steps` steps; empty if the run failed numerically.
   std::optional<Level> run_level(std::int64_t steps) {
-    Level level;
-    level.step = length() / static_cast<double>(steps);
-    NullObserver observer;
-    const Solution solution = context_.solve(
-        integrator_, ivp(), FixedStep{.step = level.step, .allow_short_last_step = false}, observer);
+    const FixedStep control = constant_steps(ivp(), steps);
+    const Solution solution = run_once(integrator_, ivp(), control, context_);
     last_status_ = solution.status;
     if (!solution.status.ok()) return std::nullopt;
-    level.error = measure_error(ivp(), solution.state, reference_.states.front(), scale_);
-    level.work = solution.work;
-    return level;
+    return Level{.step = control.step, .error = meter_->measure(solution.state), .work = solution.work};
   }
 
-  /// The number of steps of the coarsest level: doubled until the relative error is small.
-  std::optional<std::int64_t> find_coarsest() {
-    for (std::int64_t steps = 8; steps <= settings_.max_steps; steps *= 2) {
-      const std::optional<Level> level = run_level(steps);
-      if (level && level->error.relative <= settings_.start_error) return steps;
-    }
-    return std::nullopt;
+  /// The coarsest level: the number of steps is doubled until the relative error is small.
+  DoubledSteps<Level> find_coarsest() {
+    return double_steps(8, settings_.max_steps, [this](std::int64_t steps) {
+      std::optional<Level> level = run_level(steps);
+      if (level && !(level->error.relative <= settings_.start_error)) level.reset();
+      return level;
+    });
   }
 
   void refine(std::int64_t coarsest) {
-    const double floor = error_floor(rounding_floor, reference_relative());
-    std::int64_t previous = 0;
     // Where the asymptotic range begins later, as many levels again may be spent on finding it.
-    for (std::int64_t k = 0; k < 2 * settings_.levels; ++k) {
-      if (k >= settings_.levels && is_measured()) break;
-      const double exact = static_cast<double>(coarsest) * std::pow(settings_.ratio, static_cast<double>(k));
-      const auto steps = static_cast<std::int64_t>(std::llround(exact));
-      if (steps > settings_.max_steps) break;
-      if (steps == previous) continue;  // a ratio near 1 rounds to the same number of steps
-      previous = steps;
-      std::optional<Level> level = run_level(steps);
+    for (const LadderStep& rung :
+         step_ladder(coarsest, settings_.ratio, 2 * settings_.levels, settings_.max_steps)) {
+      if (rung.level >= settings_.levels && is_measured()) break;
+      std::optional<Level> level = run_level(rung.steps);
       if (!level) continue;
       levels_.push_back(std::move(*level));
       // Two levels below the floor show it; more would only cost.
       const std::size_t n = levels_.size();
+      const double floor = meter_->floor();
       if (n >= 2 && levels_[n - 1].error.relative < floor && levels_[n - 2].error.relative < floor) break;
     }
   }
 
   bool is_measured() const {
     if (!is_second_order()) return fit(&StateError::relative, 1.0).valid;
-    return fit(&StateError::position, scale_.position).valid &&
-           fit(&StateError::velocity, scale_.velocity).valid;
-  }
-
-  double reference_relative() const {
-    const double size = is_second_order() ? std::min(scale_.position, scale_.velocity) : scale_.state;
-    return reference_.states.front().largest_error() / size;
-  }
-
-  static double error_floor(double rounding, double reference_error) {
-    return std::max(rounding, reference_error / reference_margin);
+    return fit(&StateError::position, scale().position).valid &&
+           fit(&StateError::velocity, scale().velocity).valid;
   }
 
   analysis::OrderFit fit(double StateError::*quantity, double scale) const {
@@ -226,16 +202,14 @@ class ConvergenceCase {
       steps.push_back(level.step);
       errors.push_back(level.error.*quantity);
     }
-    const double reference_error = reference_.states.front().largest_error();
-    return analysis::fit_order(steps, errors, error_floor(rounding_floor * scale, reference_error),
-                               slope_tolerance);
+    return analysis::fit_order(steps, errors, meter_->floor_at(scale), slope_tolerance);
   }
 
   CaseResult judge() {
     fit_ = fit(&StateError::relative, 1.0);
     if (is_second_order()) {
-      fit_position_ = fit(&StateError::position, scale_.position);
-      fit_velocity_ = fit(&StateError::velocity, scale_.velocity);
+      fit_position_ = fit(&StateError::position, scale().position);
+      fit_velocity_ = fit(&StateError::velocity, scale().velocity);
     }
     std::string reason;
     bool holds = true, measured = true;
@@ -258,25 +232,19 @@ class ConvergenceCase {
     } else {
       check("state", fit_);
     }
-    if (!measured && reference_relative() / reference_margin > rounding_floor) {
-      return conclude(Verdict::not_applicable,
-                      fmt::format("the reference is known to {:.2g} only; {}",
-                                  reference_.states.front().largest_error(), reason));
+    if (!measured && meter_->is_limited_by_reference()) {
+      return conclude(Verdict::not_applicable, fmt::format("the reference is known to {:.2g} only; {}",
+                                                           meter_->reference_error(), reason));
     }
     // A claim that cannot be shown does not hold.
     return conclude(holds && measured ? Verdict::holds : Verdict::fails, reason);
   }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {
-    CaseResult result;
-    result.verdict = verdict;
-    result.reason = std::move(reason);
-    add_columns(result);
-    result.summary = cells_of(row());
-    return result;
+    return case_result(verdict, std::move(reason), columns(), row());
   }
 
-  void add_columns(CaseResult& result) const {
+  std::vector<Column> columns() const {
     std::vector<double> step, position, velocity, relative, seconds, components;
     std::vector<std::int64_t> used, evaluations;
     for (std::size_t k = 0; k < levels_.size(); ++k) {
@@ -297,7 +265,7 @@ class ConvergenceCase {
     };
     const std::string root_mean_square = "root mean square over the components at the end time";
     const auto size = static_cast<std::uint64_t>(ivp().system->size());
-    result.columns = {
+    std::vector<Column> columns = {
         {"step", "s", step, {}, {}},
         {"error_position", "m", position, {}, {{"norm", root_mean_square}}},
         {"error_velocity", "m/s", velocity, {}, {{"norm", root_mean_square}}},
@@ -314,14 +282,15 @@ class ConvergenceCase {
         {"seconds", "s", seconds, {}, {}},
     };
     if (!problem_.scene_toml.empty()) {
-      result.columns.push_back({"scene", "", std::vector<std::string>{problem_.scene_toml}, {}, {}});
+      columns.push_back({"scene", "", std::vector<std::string>{problem_.scene_toml}, {}, {}});
     }
+    return columns;
   }
 
   std::string relative_norm() const {
-    if (!is_second_order()) return fmt::format("root mean square over the state / {:.6g}", scale_.state);
+    if (!is_second_order()) return fmt::format("root mean square over the state / {:.6g}", scale().state);
     return fmt::format("sqrt(((error_position / {:.6g} m)^2 + (error_velocity / {:.6g} m/s)^2) / 2)",
-                       scale_.position, scale_.velocity);
+                       scale().position, scale().velocity);
   }
 
   Row row() const {
@@ -340,7 +309,7 @@ class ConvergenceCase {
     row.all = figure(fit_);
     row.position = figure(fit_position_);
     row.velocity = figure(fit_velocity_);
-    if (!reference_.states.empty()) row.reference_error = reference_.states.front().largest_error();
+    if (meter_) row.reference_error = meter_->reference_error();
     return row;
   }
 
@@ -350,8 +319,7 @@ class ConvergenceCase {
   const Integrator& integrator_;
   Settings settings_;
   const RunContext& context_;
-  analysis::ReferenceSolution reference_;
-  StateScale scale_;
+  std::optional<ErrorMeter> meter_;
   std::vector<Level> levels_;
   Status last_status_;
   analysis::OrderFit fit_;
@@ -367,11 +335,7 @@ void plan_convergence(const Spec& spec, const StudyInput& input, Plan& plan) {
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = input.catalog.method(call);
-      if (!integrator->info().has_fixed_step) {
-        input.file.fail(
-            "methods", {i},
-            fmt::format("\"{}\" chooses its own steps, expected a method with a fixed step", call));
-      }
+      require_fixed_step(input.file, i, call, integrator->info());
       plan.cases.push_back(
           {.id = group_name(problem->entry().label + "-" + call),
            .identity = "convergence\n" + problem->entry().identity + "method = " + call + "\n" + identity,

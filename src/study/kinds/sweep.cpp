@@ -184,21 +184,9 @@ Parameter make_parameter(const ParameterSpec& spec, const CheckedTable& section,
   return parameter;
 }
 
-/// At most `count` of the values, the first and the last among them.
-template <class Entry>
-void thin_out(std::vector<Entry>& values, std::size_t count) {
-  if (values.size() <= count) return;
-  std::vector<Entry> kept;
-  for (std::size_t k = 0; k < count; ++k) {
-    kept.push_back(values[count == 1 ? 0 : k * (values.size() - 1) / (count - 1)]);
-  }
-  values = std::move(kept);
-}
-
 std::vector<Parameter> make_parameters(const Spec& spec, const StudyInput& input) {
   std::vector<Parameter> parameters;
   std::set<std::string> names;
-  const auto points = static_cast<std::size_t>(spec.quick_values);
   const std::vector<CheckedTable> sections = input.file.tables("parameter");
   for (std::size_t k = 0; k < spec.parameters.size(); ++k) {
     const CheckedTable& section = sections[k];
@@ -209,8 +197,8 @@ std::vector<Parameter> make_parameters(const Spec& spec, const StudyInput& input
                                        parameter.name));
     }
     if (input.is_quick) {
-      thin_out(parameter.values, points);
-      thin_out(parameter.scenes, points);
+      parameter.values = thinned_out(std::move(parameter.values), spec.quick_values);
+      parameter.scenes = thinned_out(std::move(parameter.scenes), spec.quick_values);
     }
     parameter.texts = texts_of(parameter.values, section);
   }

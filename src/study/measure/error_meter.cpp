@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fw::study {
 
 namespace {
 
-/// Rounding of double arithmetic relative to the solution's scale.
-constexpr double rounding_floor = 2e-13;
 /// A reference has to be this much better than every error that is reported.
 constexpr double reference_margin = 0.01;
 
@@ -23,13 +22,20 @@ ErrorMeter::ErrorMeter(const SharedProblem& problem, const RunContext& context)
     return;
   }
   scale_ = measure_scale(*ivp_, reference_->states.front());
-  const double size =
-      ivp_->system->second_order() != nullptr ? std::min(scale_.position, scale_.velocity) : scale_.state;
-  floor_ = std::max(rounding_floor, reference_->states.front().largest_error() / size / reference_margin);
+  floor_ = std::max(rounding_floor, reference_error() / smallest_scale(*ivp_, scale_) / reference_margin);
 }
 
-double ErrorMeter::error(ConstVectorRef state) const {
-  return measure_error(*ivp_, state, reference_->states.front(), scale_).relative;
+StateError ErrorMeter::measure(ConstVectorRef state) const {
+  return measure_error(*ivp_, state, reference_->states.front(), scale_);
+}
+
+double ErrorMeter::floor_at(double scale) const {
+  return std::max(rounding_floor * scale, reference_error() / reference_margin);
+}
+
+double ErrorMeter::reference_error() const {
+  return reference_->states.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                    : reference_->states.front().largest_error();
 }
 
 std::string ErrorMeter::norm() const {

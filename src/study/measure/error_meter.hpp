@@ -15,11 +15,22 @@ class ErrorMeter {
 
   const Status& status() const { return status_; }
 
-  /// The relative error of an end state, see `measure_error`.
-  double error(ConstVectorRef state) const;
+  /// Against the reference's end state, see `measure_error`.
+  StateError measure(ConstVectorRef state) const;
+  /// Its relative error.
+  double error(ConstVectorRef state) const { return measure(state).relative; }
 
-  /// Below, rounding (2e-13) or a hundred times the reference's own error reigns.
+  /// Relative errors below are dominated by rounding (2e-13) or by 100 times the reference's own error bound.
   double floor() const { return floor_; }
+  /// Whether it is the reference's own error bound that sets the floor.
+  bool is_limited_by_reference() const { return floor_ > rounding_floor; }
+  /// The floor of absolute errors in components of size `scale`.
+  double floor_at(double scale) const;
+
+  /// What relative errors are related to.
+  const StateScale& scale() const { return scale_; }
+  /// Bound on the reference's own error, largest component; NaN where there is no reference.
+  double reference_error() const;
 
   /// The norm in words, with its scales.
   std::string norm() const;
@@ -28,6 +39,9 @@ class ErrorMeter {
   Vector end_state() const { return reference_->states.front().rounded(); }
 
  private:
+  /// Rounding of double arithmetic relative to the solution's scale.
+  static constexpr double rounding_floor = 2e-13;
+
   const Ivp* ivp_;
   const analysis::ReferenceSolution* reference_;
   Status status_;

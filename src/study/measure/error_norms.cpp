@@ -1,5 +1,6 @@
 #include "study/measure/error_norms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,22 +8,37 @@ namespace fw::study {
 
 namespace {
 
-double root_mean_square(ConstVectorRef values) {
-  return values.size() == 0 ? 0.0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
-}
-
 /// A scale that is zero (a system at rest) would divide by zero: errors are then absolute.
 double positive_or_one(double scale) {
   return scale > 0.0 ? scale : 1.0;
 }
 
+bool is_second_order(const Ivp& ivp) {
+  return ivp.system->second_order() != nullptr;
+}
+
 }  // namespace
+
+double root_mean_square(ConstVectorRef values) {
+  return values.size() == 0 ? 0.0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
+}
+
+double smallest_scale(const Ivp& ivp, const StateScale& scale) {
+  return is_second_order(ivp) ? std::min(scale.position, scale.velocity) : scale.state;
+}
+
+double relative_norm(const Ivp& ivp, ConstVectorRef difference, const StateScale& scale) {
+  if (!is_second_order(ivp)) return root_mean_square(difference) / scale.state;
+  const Index n = difference.size() / 2;
+  return std::sqrt(0.5 * (std::pow(root_mean_square(difference.head(n)) / scale.position, 2) +
+                          std::pow(root_mean_square(difference.tail(n)) / scale.velocity, 2)));
+}
 
 StateScale measure_scale(const Ivp& ivp, const analysis::ReferenceState& reference) {
   const Vector end = reference.rounded();
   StateScale scale;
   scale.state = positive_or_one(root_mean_square(end));
-  if (ivp.system->second_order() != nullptr) {
+  if (is_second_order(ivp)) {
     const Index n = end.size() / 2;
     // Where points return close to their start, the change is no measure of the motion.
     const double change = root_mean_square(end.head(n) - ivp.y0.head(n));
@@ -42,16 +58,14 @@ StateError measure_error(const Ivp& ivp, ConstVectorRef state, const analysis::R
   }
   StateError error;
   error.components.assign(difference.data(), difference.data() + difference.size());
-  if (ivp.system->second_order() == nullptr) {
+  error.relative = relative_norm(ivp, difference, scale);
+  if (!is_second_order(ivp)) {
     error.position = error.velocity = std::numeric_limits<double>::quiet_NaN();
-    error.relative = root_mean_square(difference) / scale.state;
     return error;
   }
   const Index n = state.size() / 2;
   error.position = root_mean_square(difference.head(n));
   error.velocity = root_mean_square(difference.tail(n));
-  error.relative = std::sqrt(
-      0.5 * (std::pow(error.position / scale.position, 2) + std::pow(error.velocity / scale.velocity, 2)));
   return error;
 }
 

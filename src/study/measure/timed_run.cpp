@@ -7,6 +7,19 @@
 
 namespace fw::study {
 
+void declare(settings::Archive& a, TimingRule& rule) {
+  using settings::setting;
+  a(setting("repetitions", rule.repetitions).integers(1, 1000).quick_fixed(1).doc("of each timing"));
+  a(setting("shortest_sample", rule.shortest_sample)
+        .unit("s")
+        .positive()
+        .doc("a shorter run is repeated within a sample; 1e-4 with `--quick`"));
+  a(setting("longest_timing", rule.longest_total)
+        .unit("s")
+        .positive()
+        .doc("a longer run gets fewer samples, but one at least"));
+}
+
 Solution run_once(const Integrator& integrator, const Ivp& ivp, const StepControl& control,
                   const RunContext& context) {
   NullObserver observer;

@@ -12,7 +12,12 @@ struct TimingRule {
   std::int64_t repetitions = 5;   ///< samples after the warm-up
   double shortest_sample = 1e-3;  ///< [s]; a shorter run is repeated within a sample, which is their mean
   double longest_total = 0.25;    ///< [s]; a longer run gets fewer samples, but one at least
+
+  /// `shortest_sample` with --quick [s].
+  static constexpr double quick_sample = 1e-4;
 };
+/// The keys `repetitions`, `shortest_sample` and `longest_timing`.
+void declare(settings::Archive& a, TimingRule& rule);
 
 /// Wall-clock seconds of one run.
 struct Timing {

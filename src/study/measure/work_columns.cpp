@@ -1,23 +1,17 @@
 #include "study/measure/work_columns.hpp"
 
-#include <string>
 #include <utility>
+
+#include "core/work_counters.hpp"
 
 namespace fw::study {
 
 void add_work_columns(std::vector<Column>& columns, std::span<const Work> runs) {
-  const std::pair<std::string, std::uint64_t Work::*> counters[] = {
-      {"rhs_evaluations", &Work::rhs_evaluations},     {"jacobian_evaluations", &Work::jacobian_evaluations},
-      {"jacobian_products", &Work::jacobian_products}, {"factorisations", &Work::factorisations},
-      {"linear_solves", &Work::linear_solves},         {"linear_iterations", &Work::linear_iterations},
-      {"newton_iterations", &Work::newton_iterations}, {"accepted_steps", &Work::accepted_steps},
-      {"rejected_steps", &Work::rejected_steps},
-  };
-  for (const auto& [name, counter] : counters) {
+  for (const WorkCounter& counter : work_counters) {
     std::vector<std::int64_t> counts;
     counts.reserve(runs.size());
-    for (const Work& work : runs) counts.push_back(static_cast<std::int64_t>(work.*counter));
-    columns.push_back({name, "1", std::move(counts), {}, {}});
+    for (const Work& work : runs) counts.push_back(static_cast<std::int64_t>(work.*counter.count));
+    columns.push_back({counter.name, "1", std::move(counts), {}, {}});
   }
 }
 
@@ -28,6 +22,17 @@ double OperationCosts::of(const Work& work) const {
   return count(work.rhs_evaluations) + jacobian * count(work.jacobian_evaluations) +
          jacobian_product * count(work.jacobian_products) + factorisation * count(work.factorisations) +
          solves;
+}
+
+void declare(settings::Archive& a, OperationCosts& costs) {
+  const auto cost = [&a](const char* name, double& value, const char* doc) {
+    a(settings::setting(name, value).unit("1").nonnegative().doc(doc));
+  };
+  cost("jacobian", costs.jacobian, "assembling J or the tangent matrices");
+  cost("jacobian_product", costs.jacobian_product, "");
+  cost("factorisation", costs.factorisation, "");
+  cost("linear_solve", costs.linear_solve, "with a factorisation at hand");
+  cost("linear_iteration", costs.linear_iteration, "");
 }
 
 }  // namespace fw::study

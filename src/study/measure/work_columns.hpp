@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/work.hpp"
+#include "settings/archive.hpp"
 #include "study/result.hpp"
 
 namespace fw::study {
@@ -24,5 +25,7 @@ struct OperationCosts {
   /// Σ count·cost over all operations of a run. Solves by Krylov iteration count by their iterations.
   double of(const Work& work) const;
 };
+/// One key per operation.
+void declare(settings::Archive& a, OperationCosts& costs);
 
 }  // namespace fw::study

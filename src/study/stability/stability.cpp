@@ -61,7 +61,8 @@ void declare(Archive& a, RegionSpec& regions) {
 
 RegionSettings region_settings(const RegionSpec& spec, const CheckedTable& table) {
   const auto check = [&table](const char* key, const std::vector<double>& range) {
-    if (!(range[0] < range[1])) table.fail(key, "found no two numbers in rising order, expected [from, to]");
+    if (!(range[0] < range[1]))
+      table.fail(key, fmt::format("found [{}, {}], expected [from, to] with from < to", range[0], range[1]));
   };
   check("real", spec.real);
   check("imaginary", spec.imaginary);
@@ -108,21 +109,6 @@ void declare(Archive& a, Spec& spec) {
     a(setting("members", spec.quick_members).integers(1, 10'000).doc("members of a family, spread evenly"));
     a(setting("problems", spec.quick_problems).integers(1, 10'000).doc("the first problems or families"));
   });
-}
-
-/// Every other member of a family, from both ends, until there are at most `most`.
-void thin_out(ProblemFamily& family, std::int64_t most) {
-  const auto count = static_cast<std::int64_t>(family.members.size());
-  if (count <= most) return;
-  std::vector<double> values;
-  std::vector<StudyProblem> members;
-  for (std::int64_t k = 0; k < most; ++k) {
-    const auto from = static_cast<std::size_t>(k * (count - 1) / std::max<std::int64_t>(most - 1, 1));
-    values.push_back(family.values[from]);
-    members.push_back(std::move(family.members[from]));
-  }
-  family.values = std::move(values);
-  family.members = std::move(members);
 }
 
 std::vector<StabilityFamily> stability_families(const Spec& spec, const StudyInput& input,

@@ -39,7 +39,9 @@ class LimitMeasurement {
     if (limit.failure.empty() && !(spectrum_.spectral_radius > 0.0))
       limit.failure = "J has no eigenvalue other than 0";
     if (limit.failure.empty() && spectrum_.is_linear && spectrum_.modes.front().growing > 0)
-      limit.failure = "J has eigenvalues with Re λ > 0: solutions grow, and a step is not to blame for that";
+      limit.failure =
+          "J has eigenvalues with Re λ > 0: the exact solution grows, so a growing numerical solution says "
+          "nothing about the step size";
     if (!limit.failure.empty()) return limit;
     limit.predicted = predict();
     if (spectrum_.is_linear) {

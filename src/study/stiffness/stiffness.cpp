@@ -11,17 +11,6 @@
 
 namespace fw::study {
 
-void declare(settings::Archive& a, OperationCosts& costs) {
-  const auto cost = [&a](const char* name, double& value, const char* doc) {
-    a(settings::setting(name, value).unit("1").nonnegative().doc(doc));
-  };
-  cost("jacobian", costs.jacobian, "assembling J or the tangent matrices");
-  cost("jacobian_product", costs.jacobian_product, "");
-  cost("factorisation", costs.factorisation, "");
-  cost("linear_solve", costs.linear_solve, "with a factorisation at hand");
-  cost("linear_iteration", costs.linear_iteration, "");
-}
-
 void declare(settings::Archive& a, StiffnessSettings& s) {
   using settings::setting;
   a(setting("target_error", s.target_error)
@@ -56,15 +45,7 @@ void declare(settings::Archive& a, StiffnessSettings& s) {
         .above(1.0)
         .doc("factor by which the operation costs may be off"));
   a.section({"operation_costs", "What operations cost, in right-hand sides."}, s.costs);
-  a(setting("repetitions", s.timing.repetitions).integers(1, 1000).quick_fixed(1).doc("of each timing"));
-  a(setting("shortest_sample", s.timing.shortest_sample)
-        .unit("s")
-        .positive()
-        .doc("a shorter run is repeated within a sample; 1e-4 with `--quick`"));
-  a(setting("longest_timing", s.timing.longest_total)
-        .unit("s")
-        .positive()
-        .doc("a longer run gets fewer samples, but one at least"));
+  declare(a, s.timing);
   a(setting("map_levels", s.map_levels).integers(2, 30).doc("steps of the map, each half the one before"));
   a(setting("stiff_product", s.stiff_product).unit("1").positive().doc("h\\|λ\\| above counts as stiff"));
   a(setting("nonstiff_product", s.nonstiff_product)
@@ -106,9 +87,7 @@ void declare(Archive& a, StiffnessSection& section) {
            {{"both", Measures::both}, {measures_cost, Measures::cost}, {measures_orders, Measures::orders}})
         .selects_cases()
         .doc("the cost over stiffness, the orders over step and stiffness, or both"));
-  a(choice("reference", section.spec.arithmetic,
-           {{"binary128", ReferenceArithmetic::binary128}, {"binary64", ReferenceArithmetic::binary64}})
-        .doc("arithmetic of the certified references"));
+  a(reference_setting(section.spec.arithmetic).doc("arithmetic of the certified references"));
 }
 
 void declare(Archive& a, Spec& spec) {
@@ -117,19 +96,6 @@ void declare(Archive& a, Spec& spec) {
   a.section({"stiffness", "The search for the cost, its timing, and the map of orders."}, section);
   a.sections(problem_sections, spec.problems);
   a.quick_section([&] { a(setting("values", spec.quick_values).at_least(2).doc("members of a family")); });
-}
-
-/// Every `stride`-th member, and the last one.
-void thin_out(ProblemFamily& family, std::int64_t count) {
-  const auto members = static_cast<std::int64_t>(family.members.size());
-  if (members <= count) return;
-  ProblemFamily thin{family.label, family.parameter, {}, {}};
-  for (std::int64_t k = 0; k < count; ++k) {
-    const auto at = static_cast<std::size_t>(k * (members - 1) / std::max<std::int64_t>(count - 1, 1));
-    thin.values.push_back(family.values[at]);
-    thin.members.push_back(std::move(family.members[at]));
-  }
-  family = std::move(thin);
 }
 
 /// A family's members with what identifies them all.
@@ -157,9 +123,9 @@ ReadFamily share(ProblemFamily& read, ReferenceArithmetic arithmetic) {
 void plan_stiffness(const Spec& spec, const StudyInput& input, Plan& plan) {
   const Catalog& catalog = input.catalog;
   StiffnessSettings settings = spec.settings;
-  if (input.is_quick) settings.timing.shortest_sample = 1e-4;
+  if (input.is_quick) settings.timing.shortest_sample = TimingRule::quick_sample;
   const std::string settings_text = settings::identity_text(settings);
-  const char* reference = spec.arithmetic == ReferenceArithmetic::binary128 ? "binary128" : "binary64";
+  const std::string reference = to_string(spec.arithmetic);
   std::vector<std::shared_ptr<const StiffnessMethod>> methods;
   for (const std::string& call : expanded(spec.methods, input)) {
     methods.push_back(std::make_shared<const StiffnessMethod>(

@@ -9,6 +9,7 @@
 #include "analysis/theory/stiffness_measures.hpp"
 #include "schemes/derived_properties.hpp"
 #include "study/measure/error_meter.hpp"
+#include "study/measure/step_ladder.hpp"
 #include "study/stiffness/stiffness_cases.hpp"
 
 namespace fw::study {
@@ -95,46 +96,37 @@ class CostCase {
     return found;
   }
 
-  std::int64_t most_steps() const { return settings_.max_evaluations / std::max(info().stages, 1); }
+  std::int64_t most_steps() const { return affordable_steps(info(), settings_.max_evaluations); }
 
   /// Doubles the number of steps until the target is reached, then halves the gap on the logarithmic axis.
   void search_steps(const Ivp& ivp, const ErrorMeter& meter, Found& found) const {
-    const double length = ivp.t1 - ivp.t0;
-    const auto control = [length](std::int64_t steps) {
-      return FixedStep{.step = length / static_cast<double>(steps), .allow_short_last_step = false};
-    };
-    std::int64_t failing = 0, reaching = settings_.fewest_steps;
-    std::optional<Found> best;
-    for (;; reaching *= 2) {
-      if (reaching > most_steps()) return;
-      best = try_run(ivp, meter, control(reaching), found);
-      if (best) break;
-      failing = reaching;
-    }
+    const auto control = [&ivp](std::int64_t steps) { return constant_steps(ivp, steps); };
+    DoubledSteps<Found> doubled = double_steps(settings_.fewest_steps, most_steps(), [&](std::int64_t steps) {
+      return try_run(ivp, meter, control(steps), found);
+    });
+    if (!doubled.run) return;
+    std::int64_t failing = doubled.rejected, reaching = doubled.steps;
     while (failing > 0 && static_cast<double>(reaching) > settings_.bracket * static_cast<double>(failing)) {
       const auto middle = static_cast<std::int64_t>(
           std::llround(std::sqrt(static_cast<double>(failing) * static_cast<double>(reaching))));
       if (middle <= failing || middle >= reaching) break;
       if (std::optional<Found> finer = try_run(ivp, meter, control(middle), found)) {
-        best = std::move(finer);
+        doubled.run = std::move(finer);
         reaching = middle;
       } else {
         failing = middle;
       }
     }
-    found = std::move(*best);
+    found = std::move(*doubled.run);
     if (failing > 0) found.bracket = static_cast<double>(reaching) / static_cast<double>(failing);
-    found.step = length / static_cast<double>(reaching);
+    found.step = control(reaching).step;
     measure(ivp, control(reaching), found);
   }
 
   void search_tolerance(const Ivp& ivp, const ErrorMeter& meter, Found& found) const {
-    Work failing;
     for (double tolerance = settings_.first_tolerance; tolerance >= 0.999 * settings_.smallest_tolerance;
          tolerance /= settings_.tolerance_ratio) {
-      const AdaptiveStep control{.relative_tolerance = tolerance,
-                                 .absolute_tolerance = tolerance * settings_.absolute_over_relative,
-                                 .maximum_steps = static_cast<std::uint64_t>(most_steps())};
+      const AdaptiveStep control = chosen_steps(tolerance, settings_.absolute_over_relative, most_steps());
       std::optional<Found> best = try_run(ivp, meter, control, found);
       if (!best) continue;
       found = std::move(*best);
@@ -215,10 +207,6 @@ class CostCase {
   }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {
-    CaseResult result;
-    result.verdict = verdict;
-    result.reason = std::move(reason);
-    add_columns(result);
     StiffnessRow row{.problem = family_.label,
                      .method = method_.call,
                      .measure = measures_cost,
@@ -228,11 +216,10 @@ class CostCase {
     row.points = static_cast<std::int64_t>(
         std::count_if(found_.begin(), found_.end(), [](const Found& f) { return f.reached; }));
     if (law_.valid) row.step_exponent = {law_.exponent, law_.exponent_low, law_.exponent_high};
-    result.summary = cells_of(row);
-    return result;
+    return case_result(verdict, std::move(reason), columns(), row);
   }
 
-  void add_columns(CaseResult& result) const {
+  std::vector<Column> columns() const {
     std::vector<double> parameter, eigenvalue, step, tolerance, error, cost, cost_spread, seconds,
         seconds_spread, samples;
     std::vector<std::string> status;
@@ -260,22 +247,23 @@ class CostCase {
       seconds_spread.push_back(found.reached ? found.bracket * median(taken) / found.timing.minimum : none);
       samples.insert(samples.end(), taken.begin(), taken.end());
     }
-    result.columns = {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},
-                      {"largest_eigenvalue", "1/s", eigenvalue, {}, {}},
-                      {"step", "s", step, {}, {}},
-                      {"tolerance", "1", tolerance, {}, {}},
-                      {"error", "1", error, {}, {}},
-                      {"status", "", status, {}, {}}};
-    add_work_columns(result.columns, work);
-    result.columns.push_back({"cost", "1", cost, {}, {}});
-    result.columns.push_back({"cost_spread", "1", cost_spread, {}, {}});
-    result.columns.push_back({"seconds", "s", seconds, {}, {}});
-    result.columns.push_back({"seconds_spread", "1", seconds_spread, {}, {}});
-    result.columns.push_back({"seconds_samples",
-                              "s",
-                              samples,
-                              {found_.size(), static_cast<std::uint64_t>(settings_.timing.repetitions)},
-                              {}});
+    std::vector<Column> columns = {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},
+                                   {"largest_eigenvalue", "1/s", eigenvalue, {}, {}},
+                                   {"step", "s", step, {}, {}},
+                                   {"tolerance", "1", tolerance, {}, {}},
+                                   {"error", "1", error, {}, {}},
+                                   {"status", "", status, {}, {}}};
+    add_work_columns(columns, work);
+    columns.push_back({"cost", "1", cost, {}, {}});
+    columns.push_back({"cost_spread", "1", cost_spread, {}, {}});
+    columns.push_back({"seconds", "s", seconds, {}, {}});
+    columns.push_back({"seconds_spread", "1", seconds_spread, {}, {}});
+    columns.push_back({"seconds_samples",
+                       "s",
+                       samples,
+                       {found_.size(), static_cast<std::uint64_t>(settings_.timing.repetitions)},
+                       {}});
+    return columns;
   }
 
   const StiffnessFamily& family_;

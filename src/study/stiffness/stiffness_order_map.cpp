@@ -198,10 +198,6 @@ class OrderMap {
   int classical_order() const { return order_on(info(), *family_.members.front()->ivp().system); }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {
-    CaseResult result;
-    result.verdict = verdict;
-    result.reason = std::move(reason);
-    add_columns(result);
     StiffnessRow row{.problem = family_.label,
                      .method = method_.call,
                      .measure = measures_orders,
@@ -216,11 +212,10 @@ class OrderMap {
     row.nonstiff_order = figure(nonstiff_);
     row.stiff_order = figure(stiff_);
     if (prediction_.valid) row.predicted_stiff_order = prediction_.order;
-    result.summary = cells_of(row);
-    return result;
+    return case_result(verdict, std::move(reason), columns(), row);
   }
 
-  void add_columns(CaseResult& result) const {
+  std::vector<Column> columns() const {
     std::vector<double> parameter, eigenvalue, errors, orders, products;
     std::vector<std::int64_t> used;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -236,13 +231,13 @@ class OrderMap {
       }
     }
     const std::vector<std::uint64_t> shape{rows_.size(), steps_.size()};
-    result.columns = {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},
-                      {"largest_eigenvalue", "1/s", eigenvalue, {}, {}},
-                      {"step", "s", steps_, {}, {}},
-                      {"map_error", "1", errors, shape, {}},
-                      {"local_order", "1", orders, shape, {}},
-                      {"stiffness_product", "1", products, shape, {}},
-                      {"used", "1", used, shape, {}}};
+    return {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},
+            {"largest_eigenvalue", "1/s", eigenvalue, {}, {}},
+            {"step", "s", steps_, {}, {}},
+            {"map_error", "1", errors, shape, {}},
+            {"local_order", "1", orders, shape, {}},
+            {"stiffness_product", "1", products, shape, {}},
+            {"used", "1", used, shape, {}}};
   }
 
   const StiffnessFamily& family_;

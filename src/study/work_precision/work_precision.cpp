@@ -46,15 +46,7 @@ void declare(settings::Archive& a, WorkPrecisionSettings& s) {
         .unit("1")
         .positive()
         .doc("largest \\|efficiency order − order\\| that holds"));
-  a(setting("repetitions", s.timing.repetitions).integers(1, 1000).quick_fixed(1).doc("of each timing"));
-  a(setting("shortest_sample", s.timing.shortest_sample)
-        .unit("s")
-        .positive()
-        .doc("a shorter run is repeated within a sample; 1e-4 with `--quick`"));
-  a(setting("longest_timing", s.timing.longest_total)
-        .unit("s")
-        .positive()
-        .doc("a longer run gets fewer samples, but one at least"));
+  declare(a, s.timing);
 }
 
 namespace {
@@ -86,8 +78,7 @@ void declare(Archive& a, WorkPrecisionSection& section) {
            {{"both", Controls::both}, {"fixed", Controls::fixed}, {"adaptive", Controls::adaptive}})
         .selects_cases()
         .doc("methods that cannot are left out, at least one has to"));
-  a(choice("reference", section.spec.arithmetic,
-           {{"binary128", ReferenceArithmetic::binary128}, {"binary64", ReferenceArithmetic::binary64}})
+  a(reference_setting(section.spec.arithmetic)
         .doc("`binary64` for systems too large for it: two methods of orders 8 and 7 in double, about 9 "
              "digits"));
 }
@@ -141,9 +132,9 @@ void plan_work_precision(const Spec& study, const StudyInput& input, Plan& plan)
   const Catalog& catalog = input.catalog;
   WorkPrecisionSettings settings = study.settings;
   check(settings, input.section("work_precision"));
-  if (input.is_quick) settings.timing.shortest_sample = 1e-4;
+  if (input.is_quick) settings.timing.shortest_sample = TimingRule::quick_sample;
   const std::vector<LadderControl> controls = ladder_controls(study.controls);
-  const char* reference = study.arithmetic == ReferenceArithmetic::binary128 ? "binary128" : "binary64";
+  const std::string reference = to_string(study.arithmetic);
   const std::vector<std::string> methods = expanded(study.methods, input);
   require_a_ladder(spec, catalog, methods, controls);
   std::vector<StudyProblem> problems;

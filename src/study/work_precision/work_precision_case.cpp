@@ -12,6 +12,7 @@
 #include "analysis/theory/linear_modes.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
 #include "study/measure/error_meter.hpp"
+#include "study/measure/step_ladder.hpp"
 #include "study/measure/work_columns.hpp"
 
 namespace fw::study {
@@ -68,7 +69,8 @@ void declare(SummaryRow& a, const Row& row) {
     "points of the ladder on the front; of fronts: all");
   a("front_points_seconds", "1", row.points_on_front_seconds, "likewise by seconds");
 }
-/// A ladder as it is run./// A ladder as it is run.
+
+/// A ladder as it is run.
 class Ladder {
  public:
   Ladder(const WorkPrecisionSpec& spec, const RunContext& context)
@@ -120,27 +122,19 @@ class Ladder {
     return rungs_.back().error < std::max(settings_.finest_error, meter_->floor());
   }
 
-  FixedStep fixed_step(std::int64_t steps) const {
-    return {.step = length() / static_cast<double>(steps), .allow_short_last_step = false};
-  }
-  std::int64_t most_steps() const { return settings_.max_evaluations / std::max(info().stages, 1); }
+  std::int64_t most_steps() const { return affordable_steps(info(), settings_.max_evaluations); }
 
   void climb_steps() {
-    std::int64_t coarsest = settings_.fewest_steps;
-    for (;; coarsest *= 2) {
-      if (coarsest > most_steps()) return;
-      const std::optional<Rung> rung = try_run(fixed_step(coarsest), 0.0);
-      if (rung && rung->error <= settings_.start_error) break;
-    }
-    std::int64_t previous = 0;
-    for (std::int64_t k = 0; k < settings_.levels; ++k) {
-      const double exact =
-          static_cast<double>(coarsest) * std::pow(settings_.step_ratio, static_cast<double>(k));
-      const auto steps = static_cast<std::int64_t>(std::llround(exact));
-      if (steps == previous) continue;
-      if (steps > most_steps()) break;
-      previous = steps;
-      const FixedStep control = fixed_step(steps);
+    const DoubledSteps<Rung> coarsest =
+        double_steps(settings_.fewest_steps, most_steps(), [this](std::int64_t steps) {
+          std::optional<Rung> rung = try_run(constant_steps(ivp(), steps), 0.0);
+          if (rung && !(rung->error <= settings_.start_error)) rung.reset();
+          return rung;
+        });
+    if (!coarsest.run) return;
+    for (const LadderStep& level :
+         step_ladder(coarsest.steps, settings_.step_ratio, settings_.levels, most_steps())) {
+      const FixedStep control = constant_steps(ivp(), level.steps);
       std::optional<Rung> rung = try_run(control, control.step);
       if (!rung) continue;
       if (rung->work.rhs_evaluations > static_cast<std::uint64_t>(settings_.max_evaluations)) break;
@@ -154,9 +148,7 @@ class Ladder {
       const double tolerance =
           settings_.first_tolerance / std::pow(settings_.tolerance_ratio, static_cast<double>(k));
       if (tolerance < 0.999 * settings_.smallest_tolerance) break;
-      const AdaptiveStep control{.relative_tolerance = tolerance,
-                                 .absolute_tolerance = tolerance * settings_.absolute_over_relative,
-                                 .maximum_steps = static_cast<std::uint64_t>(most_steps())};
+      const AdaptiveStep control = chosen_steps(tolerance, settings_.absolute_over_relative, most_steps());
       std::optional<Rung> rung = try_run(control, tolerance);
       if (!rung && last_status_.code == StatusCode::step_limit) break;  // a tighter one needs even more
       if (!rung) continue;
@@ -228,27 +220,25 @@ class Ladder {
   }
 
   CaseResult conclude(std::string reason, Verdict verdict = Verdict::not_applicable) const {
-    CaseResult result;
-    result.verdict = verdict;
-    result.reason = std::move(reason);
-    add_columns(result);
     Row row{.problem = spec_.problem->entry().label,
             .method = spec_.call,
             .family = info().family,
             .control = to_string(spec_.control),
             .expected_order = expected_order(),
             .fit = fit_};
-    const std::vector<double> errors = numbers_of(result, "error");
+    std::vector<double> errors, evaluations, seconds;
+    for (const Rung& rung : rungs_) {
+      errors.push_back(rung.error);
+      evaluations.push_back(evaluations_of(rung));
+      seconds.push_back(rung.timing.minimum);
+    }
     if (!errors.empty()) row.smallest_error = *std::min_element(errors.begin(), errors.end());
-    row.evaluations_at_target =
-        analysis::cost_at_error(numbers_of(result, "rhs_evaluations"), errors, settings_.target_error);
-    row.seconds_at_target =
-        analysis::cost_at_error(numbers_of(result, "seconds"), errors, settings_.target_error);
-    result.summary = cells_of(row);
-    return result;
+    row.evaluations_at_target = analysis::cost_at_error(evaluations, errors, settings_.target_error);
+    row.seconds_at_target = analysis::cost_at_error(seconds, errors, settings_.target_error);
+    return case_result(verdict, std::move(reason), columns(), row);
   }
 
-  void add_columns(CaseResult& result) const {
+  std::vector<Column> columns() const {
     std::vector<double> step, tolerance, error, seconds, samples;
     std::vector<Work> work;
     const bool is_fixed = spec_.control == LadderControl::fixed;
@@ -262,18 +252,19 @@ class Ladder {
     }
     std::vector<std::int64_t> used(rungs_.size(), 0);
     if (!fit_.used.empty()) std::copy(fit_.used.begin(), fit_.used.end(), used.begin());
-    result.columns = {
+    std::vector<Column> columns = {
         {"step", "s", step, {}, {}},
         {"tolerance", "1", tolerance, {}, {}},
         {"error", "1", error, {}, {{"norm", meter_ ? meter_->norm() : "there is no reference"}}},
         {"used", "1", used, {}, {}}};
-    add_work_columns(result.columns, work);
-    result.columns.push_back({"seconds", "s", seconds, {}, {}});
-    result.columns.push_back({"seconds_samples",
-                              "s",
-                              samples,
-                              {rungs_.size(), static_cast<std::uint64_t>(settings_.timing.repetitions)},
-                              {}});
+    add_work_columns(columns, work);
+    columns.push_back({"seconds", "s", seconds, {}, {}});
+    columns.push_back({"seconds_samples",
+                       "s",
+                       samples,
+                       {rungs_.size(), static_cast<std::uint64_t>(settings_.timing.repetitions)},
+                       {}});
+    return columns;
   }
 
   const WorkPrecisionSpec& spec_;
