@@ -28,7 +28,7 @@ struct RunArguments {
   std::string directory = "results";
   int jobs = 1;
   std::optional<double> time_limit;
-  bool quick = false, force = false, directory_given = false;
+  bool quick = false, force = false, strict = false, directory_given = false;
 };
 
 /// Whether the argument is a result file, whose study is repeated; what HDF5 cannot open is a study file.
@@ -162,9 +162,10 @@ int run(const RunArguments& arguments, const std::string& command_line) {
     }
   }
   print_summary(studies, tallies);
-  std::size_t fails = 0, not_computed = 0;
+  std::size_t fails = 0, not_applicable = 0, not_computed = 0;
   for (const Tally& tally : tallies) {
     fails += tally.fails;
+    not_applicable += tally.not_applicable;
     not_computed += tally.not_computed;
   }
   if (not_computed > 0) {
@@ -174,7 +175,8 @@ int run(const RunArguments& arguments, const std::string& command_line) {
                not_computed, not_computed == 1 ? "" : "s", not_computed == 1 ? "it" : "them");
     return exit_failure;
   }
-  return fails > 0 || differs ? exit_verdict_fails : exit_success;
+  const bool is_open = arguments.strict && not_applicable > 0;
+  return fails > 0 || differs || is_open ? exit_verdict_fails : exit_success;
 }
 
 }  // namespace
@@ -200,6 +202,9 @@ void add_run_command(CLI::App& app, Action& action, const std::string& command_l
       ->type_name("N");
   command->add_flag("--quick", arguments->quick, "Shrink each study by its own [quick] section");
   command->add_flag("--force", arguments->force, "Run also the cases that are finished");
+  command->add_flag(
+      "--strict", arguments->strict,
+      "End with exit code 1 also where a verdict is \"not applicable\", not only where one \"fails\"");
   command->callback([arguments, directory, &action, command_line] {
     arguments->directory_given = directory->count() > 0;
     action = [arguments, command_line] { return run(*arguments, command_line); };

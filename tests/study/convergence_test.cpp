@@ -1,6 +1,12 @@
 #include "study/kinds/convergence.hpp"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
@@ -13,6 +19,8 @@
 
 namespace fw::study {
 namespace {
+
+using ::testing::HasSubstr;
 
 Vector force(const SecondOrderSystem& system, double t, const Vector& q, const Vector& v) {
   Vector f(q.size());
@@ -158,6 +166,40 @@ TEST(Convergence, HoldsForTheSameSchemesWithoutTheBug) {
   };
   const StudyResult result = run_text(convergence_spec("\"sound_midpoint\"", duffing), SeededCatalog(seeds));
   EXPECT_EQ(result.cases.front().verdict, Verdict::holds) << result.cases.front().reason;
+}
+
+/// A scene in a file of its own, as a problem.
+CaseResult order_on(const std::string& method, const std::string& scene, double end,
+                    const std::string& keys = "") {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / fmt::format("federwerk_convergence_{}.toml", ::getpid());
+  std::ofstream(path) << scene;
+  const StudyResult result =
+      run_text("kind = \"convergence\"\ntitle = \"test\"\nmethods = [\"" + method +
+                   "\"]\n[convergence]\nlevels = 7\n" + keys + "[[problem]]\nscene = \"" + path.string() +
+                   fmt::format("\"\nt_end = {}\n", end),
+               SeededCatalog({}));
+  std::filesystem::remove(path);
+  return result.cases.front();
+}
+
+TEST(Convergence, IsNotApplicableWhereNothingCanBeMeasured) {
+  const std::string fall =
+      "[world]\ngravity = [0, 0, -9.81]\n[particles]\nposition = [[0, 0, 1]]\nmass = 1.0\n";
+  const CaseResult exact = order_on("velocity_verlet", fall, 1.0);
+  EXPECT_EQ(exact.verdict, Verdict::not_applicable) << exact.reason;
+  EXPECT_THAT(exact.reason, HasSubstr("exact on this problem"));
+  const std::string spring =
+      "[particles]\nposition = [[0, 0, 0], [1.3, 0, 0]]\nmass = 1.0\nfixed = [0]\n"
+      "[springs]\nbetween = [[0, 1]]\nrest_length = 1.0\nstiffness = 1.0\n";
+  const CaseResult overdamped = order_on("rk4", spring + "damping = 1e4\n", 1.0, "max_steps = 4096\n");
+  EXPECT_EQ(overdamped.verdict, Verdict::not_applicable) << overdamped.reason;
+  const CaseResult kinks = order_on(
+      "rk4",
+      spring +
+          "[[obstacle]]\nshape = \"plane\"\npoint = [1.1, 0, 0]\nnormal = [1, 0, 0]\nstiffness = 500.0\n",
+      4.0);
+  EXPECT_EQ(kinks.verdict, Verdict::not_applicable) << kinks.reason;
 }
 
 TEST(Convergence, SaysNotApplicableForAMechanicalSchemeOnAFirstOrderEquation) {

@@ -138,10 +138,13 @@ class ConvergenceCase {
     if (!meter_->status().ok()) return conclude(Verdict::not_applicable, meter_->status().describe());
     const DoubledSteps<Level> coarsest = find_coarsest();
     if (!coarsest.run) {
-      return conclude(Verdict::fails,
+      // Runs that reach the end with a large error at the finest step refute the method; runs that do not have
+      // met its stability limit.
+      const bool reached_end = last_status_.ok();
+      return conclude(reached_end && !has_kinks() ? Verdict::fails : Verdict::not_applicable,
                       fmt::format("no step down to {:.3g} gives a relative error below {:g}: {}",
                                   length() / static_cast<double>(settings_.max_steps), settings_.start_error,
-                                  last_status_.describe()));
+                                  reached_end ? "the finest run reached the end" : last_status_.describe()));
     }
     refine(coarsest.steps);
     return judge();
@@ -190,6 +193,15 @@ class ConvergenceCase {
     }
   }
 
+  bool has_kinks() const { return !problem_.problem.is_smooth; }
+
+  /// Whether no step has an error that stands out of rounding.
+  bool is_exact() const {
+    return !levels_.empty() && !meter_->is_limited_by_reference() &&
+           std::all_of(levels_.begin(), levels_.end(),
+                       [&](const Level& level) { return level.error.relative < meter_->floor(); });
+  }
+
   bool is_measured() const {
     if (!is_second_order()) return fit(&StateError::relative, 1.0).valid;
     return fit(&StateError::position, scale().position).valid &&
@@ -211,8 +223,14 @@ class ConvergenceCase {
       fit_position_ = fit(&StateError::position, scale().position);
       fit_velocity_ = fit(&StateError::velocity, scale().velocity);
     }
+    if (is_exact()) {
+      return conclude(
+          Verdict::not_applicable,
+          fmt::format("exact on this problem: the errors of all {} steps are below the rounding of {:.1e}",
+                      levels_.size(), meter_->floor()));
+    }
     std::string reason;
-    bool holds = true, measured = true;
+    bool holds = true, refuted = false, measured = true;
     const auto check = [&](const char* what, const analysis::OrderFit& order_fit) {
       if (!reason.empty()) reason += "; ";
       if (!order_fit.valid) {
@@ -220,9 +238,12 @@ class ConvergenceCase {
         measured = false;
         return;
       }
-      const bool agrees = std::abs(order_fit.order - expected_order()) <= settings_.tolerance &&
-                          order_fit.correlation >= settings_.minimum_correlation;
-      holds = holds && agrees;
+      // The interval decides: inside the tolerance the order holds, outside it is refuted, else it is open.
+      const bool is_a_law = order_fit.correlation >= settings_.minimum_correlation;
+      const double low = expected_order() - settings_.tolerance,
+                   high = expected_order() + settings_.tolerance;
+      holds = holds && is_a_law && order_fit.order_low >= low && order_fit.order_high <= high;
+      refuted = refuted || !is_a_law || order_fit.order_low > high || order_fit.order_high < low;
       reason += fmt::format("{} {:.3f} [{:.3f}, {:.3f}] r = {:.6f}", what, order_fit.order,
                             order_fit.order_low, order_fit.order_high, order_fit.correlation);
     };
@@ -236,8 +257,13 @@ class ConvergenceCase {
       return conclude(Verdict::not_applicable, fmt::format("the reference is known to {:.2g} only; {}",
                                                            meter_->reference_error(), reason));
     }
-    // A claim that cannot be shown does not hold.
-    return conclude(holds && measured ? Verdict::holds : Verdict::fails, reason);
+    if (holds && measured) return conclude(Verdict::holds, reason);
+    if (refuted && has_kinks()) {
+      return conclude(Verdict::not_applicable, reason + "; forces with kinks lower the order");
+    }
+    if (refuted) return conclude(Verdict::fails, reason);
+    return conclude(Verdict::not_applicable,
+                    reason + (measured ? "; not decided: the interval reaches beyond the tolerance" : ""));
   }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {
