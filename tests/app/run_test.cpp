@@ -217,7 +217,9 @@ TEST_F(Run, ReportsWhatDiffersInARepetition) {
   ASSERT_EQ(run_study("r").exit_code, 0);
   inspect(
       "import h5py\np = f.filename\nf.close()\ng.close()\nf = h5py.File(p, 'r+')\n"
-      "f['cases/rotation-rk4/error'][2] *= 1.5\nf.close()\n",
+      "f['cases/rotation-rk4/error'][2] *= 1.5\nf.close()\n"
+      "import hashlib\nb = open(p, 'rb').read()\n"
+      "open(p, 'ab').write(b'federwerk sha256 ' + hashlib.sha256(b).hexdigest().encode() + b'\\n')\n",
       {file("r/s.h5")});
   const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
   EXPECT_EQ(result.exit_code, 1);
@@ -237,7 +239,9 @@ TEST_F(Run, RefusesToRepeatADamagedFileOrToShrinkIt) {
   EXPECT_THAT(run(scratch_.path(), {"run", "r/s.h5", "--quick"}).err, HasSubstr("expected no --quick"));
   inspect(
       "p = f.filename\nf.close()\ng.close()\nf = h5py.File(p, 'r+')\n"
-      "f.attrs['spec'] = f.attrs['spec'].replace('levels = 6', 'levels = 7')\nf.close()\n",
+      "f.attrs['spec'] = f.attrs['spec'].replace('levels = 6', 'levels = 7')\nf.close()\n"
+      "import hashlib\nb = open(p, 'rb').read()\n"
+      "open(p, 'ab').write(b'federwerk sha256 ' + hashlib.sha256(b).hexdigest().encode() + b'\\n')\n",
       {file("r/s.h5")});
   const ProcessResult result = run(scratch_.path(), {"run", "r/s.h5"});
   EXPECT_EQ(result.exit_code, 2);
