@@ -22,8 +22,8 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path), source_(o
   } catch (const LibraryError& error) {
     const std::string reason = error.what();
     if (reason.find("truncated file") != std::string::npos) throw InputError(name + " is truncated");
-    if (reason.find("signature") != std::string::npos) throw InputError(name + " is no HDF5 file");
-    throw InputError(name + " is no HDF5 file or damaged: " + reason);
+    if (reason.find("signature") != std::string::npos) throw InputError(name + " is not an HDF5 file");
+    throw InputError(name + " is not an HDF5 file, or is damaged: " + reason);
   }
   if (text_of(attributes_, "format") != format_name) {
     throw InputError(

@@ -48,7 +48,7 @@ TEST(WriteTarget, RefusesAPlaceThatCannotHoldTheFile) {
   expect_refused(scratch / "nowhere" / "a.h5", "there is no directory");
   expect_refused(scratch / "file" / "a.h5", "is no directory");
   expect_refused(scratch / "directory.h5", "it is a directory");
-  expect_refused("/dev/null", "no regular file");
+  expect_refused("/dev/null", "not a regular file");
   expect_refused(scratch / (std::string(252, 'a') + ".h5"), "too long");
   EXPECT_THROW(check_writable_target(""), InputError);
 }
@@ -63,8 +63,8 @@ TEST(WriteTarget, RefusesToOverwriteWhatIsNoWholeResult) {
   run_python(
       "import h5py, sys\nf = h5py.File(sys.argv[1], 'w')\nf['x'] = [1, 2, 3]\nf.attrs['format'] = 'other'\n",
       {(scratch / "foreign.h5").string()});
-  expect_refused(scratch / "notes.txt", "no HDF5 file");
-  expect_refused(scratch / "empty.h5", "no HDF5 file");
+  expect_refused(scratch / "notes.txt", "not an HDF5 file");
+  expect_refused(scratch / "empty.h5", "not an HDF5 file");
   expect_refused(scratch / "truncated.h5", "truncated");
   expect_refused(scratch / "foreign.h5", "no federwerk result");
   EXPECT_EQ(read_bytes(scratch / "notes.txt"), "my thesis\n");
