@@ -2,7 +2,7 @@
 """Compares result files with their description: check_results_schema.py docs/results_schema.md FILE.h5...
 
 Every dataset and attribute of a file must be described, with its shape, type and unit, and everything described for the
-file's kind must be there: in the file, and in every case. A table's column "there" says where a dataset is: "always",
+file's kind must be there: in the file, and in every case. A table's column "present" says where a dataset is: "always",
 "with `x`" or "without `x`" (x in the same group); any other text makes it optional. A kind without a section of its own is
 held against "Studies in general". Prints one line per deviation; the exit code is 1 if there is one.
 """
@@ -12,7 +12,7 @@ import tomllib
 
 import h5py
 
-COLUMNS = ("dataset", "attribute", "shape", "type", "unit", "kinds", "there", "meaning")
+COLUMNS = ("dataset", "attribute", "shape", "type", "unit", "kinds", "present", "meaning")
 UNIT = re.compile(r"(1|[A-Za-z]+(\^\d+)?)([*/][A-Za-z]+(\^\d+)?)*")
 
 
@@ -112,7 +112,7 @@ def check_dataset(path, dataset, row, sizes):
 def check_presence(group, row, members):
     """Holds a row against a group that it applies to: `members` are the names of its datasets."""
     name = name_of(row).rsplit("/", 1)[1]
-    there = row.get("there", "always")
+    there = row.get("present", "always")
     found = any(pattern(name).fullmatch(member) for member in members)
     condition = re.fullmatch(r"(with|without) `(\w+)`", there)
     if condition:
@@ -134,7 +134,7 @@ def check(document, path):
         if kind == "sweep":  # has what its inner kind has
             tables_of_kind += sections[f"Kind {tomllib.loads(file.attrs['spec'])['study']['kind']}"]
         rows = [row for row in tables_of_kind if "dataset" in row]
-        rows.sort(key=lambda row: name_of(row).count("<"))  # a fixed name goes before a pattern
+        rows.sort(key=lambda row: name_of(row).count("<"))  # a fixed name takes precedence over a pattern
         sizes, members = {}, {}
         for name, dataset in datasets(file).items():
             members.setdefault(name.rsplit("/", 1)[0], []).append(name.rsplit("/", 1)[1])

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/commands.hpp"
+#include "app/method_json.hpp"
 #include "catalog/declared_options.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
@@ -136,12 +137,8 @@ std::string method_json(const DescribedMethod& method) {
   json.key("type").value("method").key("name").value(info.name).key("call").value(method.call);
   json.key("title").value(info.title);
   json.key("family").value(info.family).key("formula").value(info.formula);
-  json.key("order").value(std::int64_t{info.order});
-  json.key("order_with_velocity_forces").value(std::int64_t{info.order_with_velocity_forces});
-  json.key("stages").value(std::int64_t{info.stages}).key("explicit").value(info.is_explicit);
-  json.key("multistep").value(info.is_multistep).key("adaptive").value(info.is_adaptive);
-  json.key("symplectic").value(info.is_symplectic).key("a_stable").value(info.is_a_stable);
-  json.key("l_stable").value(info.is_l_stable).key("reference").value(info.reference);
+  write_method_properties(json, info);
+  json.key("reference").value(info.reference);
   json.key("options").begin_array();
   for (const settings::SettingDescription& option : method.entry.options) {
     json.begin_object().key("name").value(option.info.name);

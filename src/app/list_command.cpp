@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/method_json.hpp"
 #include "app/methods_page.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
@@ -41,12 +42,7 @@ std::string methods_json(bool only_oracles) {
     if (only_oracles && info.family != oracle_family) continue;
     json.begin_object();
     json.key("name").value(info.name).key("title").value(info.title).key("family").value(info.family);
-    json.key("order").value(std::int64_t{info.order});
-    json.key("order_with_velocity_forces").value(std::int64_t{info.order_with_velocity_forces});
-    json.key("stages").value(std::int64_t{info.stages});
-    json.key("explicit").value(info.is_explicit).key("multistep").value(info.is_multistep);
-    json.key("adaptive").value(info.is_adaptive).key("symplectic").value(info.is_symplectic);
-    json.key("a_stable").value(info.is_a_stable).key("l_stable").value(info.is_l_stable);
+    write_method_properties(json, info);
     json.key("needs_second_order").value(info.needs.has(Capability::second_order));
     json.key("reference").value(info.reference);
     json.end_object();

@@ -157,7 +157,7 @@ int run(const RunArguments& arguments, const std::string& command_line) {
     const bool is_last = tallies.size() == studies.size();
     if (interrupted && !(tallies.back().complete && is_last)) {
       fmt::print(stderr,
-                 "federwerk: interrupted; finished cases are kept, the same command goes on from here\n");
+                 "federwerk: interrupted; finished cases are saved; run the same command again to resume\n");
       return exit_failure;
     }
   }

@@ -96,7 +96,7 @@ std::string settings_page(const settings::SectionDescription& description) {
 }
 
 std::string summary_page(const study::StudyKind& kind) {
-  std::string text = "| dataset | shape | type | unit | there | meaning |\n|---|---|---|---|---|---|\n";
+  std::string text = "| dataset | shape | type | unit | present | meaning |\n|---|---|---|---|---|---|\n";
   const auto add = [&text](const std::string& name, const char* type, const std::string& unit,
                            const std::string& meaning) {
     text += fmt::format("| `/summary/{}` | (R) | {} | {}| always |{} |\n", name, type,

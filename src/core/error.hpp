@@ -12,7 +12,7 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The machine's refusal: full disk, vanished directory, exhausted memory. The command line answers with
+/// An operating-system failure: full disk, vanished directory, exhausted memory. The command line answers with
 /// exit code 3. A numerical failure is no exception but a `Status`.
 class SystemError : public std::runtime_error {
  public:

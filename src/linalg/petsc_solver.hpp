@@ -16,7 +16,7 @@ namespace fw::linalg {
 /// - `-ksp_rtol` and `-ksp_max_it` take the places of `relative_tolerance` and `max_iterations`.
 /// - SBAIJ takes the upper triangle of a matrix that has to be symmetric.
 /// - InputError (from the constructor, or from the first `factorise`, when PETSc reads them): options that
-/// nobody asks for, unknown types, values out of range. A combination that PETSc does not support is a
+/// PETSc did not use, unknown types, values out of range. A combination that PETSc does not support is a
 /// Status.
 /// - Failures are PETSc's reasons: KSPConvergedReason and PCFailedReason by name.
 class PetscSolver final : public LinearSolver {

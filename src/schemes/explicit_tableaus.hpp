@@ -6,7 +6,7 @@
 
 namespace fw::schemes {
 
-/// Every explicit Runge–Kutta method of the catalogue, by rising order; the ones of order 6 and more come
+/// Every explicit Runge–Kutta method of the catalogue, by ascending order; the ones of order 6 and more come
 /// from `high_order_explicit_tableaus`.
 const std::vector<ButcherTableau>& explicit_tableaus();
 

@@ -6,7 +6,7 @@
 
 namespace fw::schemes {
 
-/// Every explicit Runge–Kutta–Nyström method of the catalogue, by rising order.
+/// Every explicit Runge–Kutta–Nyström method of the catalogue, by ascending order.
 const std::vector<NystromTableau>& nystrom_tableaus();
 
 /// Partitioned pairs with implicit stages, positions by one method and velocities by another, in Nyström

@@ -11,7 +11,7 @@ namespace fw::schemes {
 /// 1990].
 SplittingScheme from_symmetric_weights(SplittingScheme names, const CoefficientRow& weights);
 
-/// Every splitting scheme of the catalogue, by rising order.
+/// Every splitting scheme of the catalogue, by ascending order.
 ///
 /// Where the literature prints decimals of 15 to 26 digits, the numbers here are the solution of the order
 /// conditions that is nearest to them, found by Newton's method with 60 digits; they agree with the print to

@@ -22,7 +22,7 @@ struct SectionDescription {
   bool is_free = false;  ///< holds a whole study of another kind
   std::vector<SettingDescription> settings{};
   std::vector<SectionDescription> sections{};
-  std::vector<SectionChoice> choices{};
+  std::vector<SectionChoice> choices;
 };
 
 /// Keys that go together: named after one of them, or after the value of the key that chooses.

@@ -36,7 +36,7 @@ void check_writable_place(const fs::path& path) {
   }
   if (fs::exists(present)) {
     if (!fs::is_regular_file(present)) {
-      throw InputError(fmt::format("cannot write \"{}\": it is no regular file", name));
+      throw InputError(fmt::format("cannot write \"{}\": it is not a regular file", name));
     }
     if (::access(path.c_str(), W_OK) != 0) {
       throw InputError(fmt::format("cannot write \"{}\": {}", name, std::generic_category().message(errno)));

@@ -80,7 +80,7 @@ void set_at(toml::node* place, const std::vector<Step>& steps, const std::string
     }
     const std::string& key = std::get<std::string>(steps[k]);
     toml::table* table = place->as_table();
-    if (table == nullptr) fail(fmt::format("what should hold \"{}\" is no table", key));
+    if (table == nullptr) fail(fmt::format("what should hold \"{}\" is not a table", key));
     if (is_last) {
       table->insert_or_assign(key, value);
     } else {

@@ -88,7 +88,7 @@ bool TomlTree::has(std::string_view key) const {
 
 TomlTree TomlTree::table(std::string_view key) {
   toml::node& entry = node_->table->insert(key, toml::table{}).first->second;
-  if (!entry.is_table()) throw std::logic_error("\"" + std::string(key) + "\" is no table");
+  if (!entry.is_table()) throw std::logic_error("\"" + std::string(key) + "\" is not a table");
   return TomlTree(std::make_shared<Node>(Node{node_->root, entry.as_table()}));
 }
 

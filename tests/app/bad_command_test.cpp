@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "my thesis\n"),
         rk4("TheSceneItself", {"-o", "s.toml"}, {"s.toml", "will not overwrite"}),
         with_file(rk4("ForeignDefaultFile", {}, {"s-rk4.h5", "will not overwrite"}), "s-rk4.h5", ""),
-        with_file(rk4("Pipe", {"-o", "p"}, {"\"p\"", "no regular file"}), "p|", ""),
+        with_file(rk4("Pipe", {"-o", "p"}, {"\"p\"", "not a regular file"}), "p|", ""),
         rk4("ProcessFileSystem", {"-o", "/proc/a.h5"}, {"/proc/a.h5"}),
         rk4("SystemFileSystem", {"-o", "/sys/a.h5"}, {"/sys/a.h5"}),
         rk4("NameTooLong", {"-o", std::string(300, 'a') + ".h5"}, {"too long"}),
@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(
     Show, BadCommand,
     ::testing::Values(
         BadInput{"Missing", {"show", "a.h5"}, {}, {"a.h5", "No such file"}},
-        BadInput{"Directory", {"show", "d"}, {{"d/", ""}}, {"\"d\"", "no regular file"}},
+        BadInput{"Directory", {"show", "d"}, {{"d/", ""}}, {"\"d\"", "not a regular file"}},
         BadInput{"Empty", {"show", "a.h5"}, {{"a.h5", ""}}, {"a.h5", "not an HDF5 file"}},
         BadInput{"Text", {"show", "a.h5"}, {{"a.h5", "hello\n"}}, {"a.h5", "not an HDF5 file"}},
         BadInput{"TextAsJson", {"show", "a.h5", "--json"}, {{"a.h5", "x"}}, {"a.h5", "not an HDF5 file"}}),

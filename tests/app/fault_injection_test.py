@@ -148,7 +148,7 @@ class FaultInjection(unittest.TestCase):
                     self.assertEqual(len(finished(out)), 24)
                     break
                 if code == 3:
-                    self.assertRegex(error, r"^federwerk: (interrupted; finished cases are kept|\d+ cases? could not be computed)")
+                    self.assertRegex(error, r"^federwerk: (interrupted; finished cases are saved|\d+ cases? could not be computed)")
                     self.assertEqual(error.count("\n"), 1)
                 elif code not in (-signal.SIGKILL, -signal.SIGTERM, -signal.SIGINT):
                     self.fail(f"{victim}: exit code {code}: {error}")

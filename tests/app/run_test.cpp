@@ -143,7 +143,7 @@ TEST_F(Run, GoesOnWhereItWasInterrupted) {
   process.send(SIGINT);
   const ProcessResult stopped = process.wait();
   EXPECT_EQ(stopped.exit_code, 3) << stopped.signal;
-  EXPECT_THAT(stopped.err, HasSubstr("interrupted; finished cases are kept"));
+  EXPECT_THAT(stopped.err, HasSubstr("interrupted; finished cases are saved"));
   inspect("assert f.attrs['status'] == 'incomplete' and len(f['cases']) == 1\n", {file("r/s.h5")});
 
   write_bytes(scratch_ / "s.toml", head + "1e-3" + problem);

@@ -181,7 +181,7 @@ TEST(Show, SaysWhyAFileCannotBeShown) {
   refuses("a.h5", "kinetic_energy");
   refuses("truncated.h5", "truncated");
   refuses("text.h5", "not an HDF5 file");
-  refuses("directory", "no regular file");
+  refuses("directory", "not a regular file");
   refuses("missing.h5", "No such file");
 }
 

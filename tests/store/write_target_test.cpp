@@ -48,7 +48,7 @@ TEST(WriteTarget, RefusesAPlaceThatCannotHoldTheFile) {
   expect_refused(scratch / "nowhere" / "a.h5", "there is no directory");
   expect_refused(scratch / "file" / "a.h5", "is no directory");
   expect_refused(scratch / "directory.h5", "it is a directory");
-  expect_refused("/dev/null", "no regular file");
+  expect_refused("/dev/null", "not a regular file");
   expect_refused(scratch / (std::string(252, 'a') + ".h5"), "too long");
   EXPECT_THROW(check_writable_target(""), InputError);
 }

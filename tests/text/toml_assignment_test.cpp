@@ -48,7 +48,7 @@ TEST(TomlAssignment, RefusesPathsThatLeadNowhere) {
     refuses(path, "expected keys and indices");
   }
   refuses("p[2].name", "found index 2, expected less than 2");
-  refuses("a.b", "what should hold \"b\" is no table");
+  refuses("a.b", "what should hold \"b\" is not a table");
   refuses("t[0]", "is no list");
 }
 

@@ -16,8 +16,8 @@ struct VibrationMode {
 /// A system at one state as linear stability sees it: ẏ = J y, or z̈ = −W z − C ż in the coordinates
 /// z = M^{1/2} q of the moving degrees of freedom with W = −M^{−1/2} K M^{−1/2}, C = −M^{−1/2} D M^{−1/2}.
 struct LinearModes {
-  /// Of J [1/s]; what grows by itself (Re λ > 0: compressed springs buckle) and what rests (λ = 0) is left
-  /// out, since no step size is to blame.
+  /// Of J [1/s]; unstable (Re λ > 0: compressed springs buckle) and zero modes are excluded: they do not
+  /// limit the step size.
   std::vector<Complex> eigenvalues{};
   /// Of a second-order system; modes that grow or rest are left out.
   std::vector<VibrationMode> vibrations{};

@@ -29,9 +29,10 @@ class Stepper {
 /// A stepper that estimates its error, so that its steps can be chosen.
 class AdaptiveStepper : public Stepper {
  public:
-  /// Tries the step from (t, y) to t + h: writes the solution of higher standing into `y_new` and its
-  /// difference from the embedded one into `error`. May be called again from the same (t, y) with a smaller
-  /// h. A failure that a smaller step may cure (Newton, a value that is not finite) is a Status as well.
+  /// Tries the step from (t, y) to t + h: writes the solution that is propagated (the higher-order one) into
+  /// `y_new` and its difference from the embedded one into `error`. May be called again from the same (t, y)
+  /// with a smaller h. A failure that a smaller step may cure (Newton, a value that is not finite) is a Status
+  /// as well.
   virtual Status attempt(double t, double h, ConstVectorRef y, VectorRef y_new, VectorRef error) = 0;
 
   /// The last attempt has become the state: what it knows of the end (FSAL) serves the next step.

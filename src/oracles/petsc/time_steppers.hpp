@@ -11,7 +11,7 @@ namespace fw::oracles {
 /// Methods of PETSc's TS [Abhyankar et al. 2018] as integrators. Adaptive runs use PETSc's basic controller
 /// with its weighted root mean square norm and the tolerances given; `petsc` are further options in PETSc's
 /// notation ("-ts_adapt_type dsp -snes_rtol 1e-12"), which override what is set here. InputError for a type
-/// that does not exist, numbers out of range and options that nobody asks for.
+/// that does not exist, numbers out of range and options that PETSc did not use.
 
 /// One of a family of schemes by its name in PETSc.
 struct TsType {

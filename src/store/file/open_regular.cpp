@@ -20,7 +20,7 @@ std::shared_ptr<DriverFile> open_regular(const std::filesystem::path& path) {
   auto file = std::make_shared<DriverFile>(descriptor);
   struct stat status {};
   if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw InputError(fmt::format("cannot read \"{}\": it is no regular file", path.string()));
+    throw InputError(fmt::format("cannot read \"{}\": it is not a regular file", path.string()));
   }
   return file;
 }

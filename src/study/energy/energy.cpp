@@ -109,9 +109,9 @@ void declare(SummaryRow& a, const Row& row) {
   a("method", "", row.method, "as in the study, with settings");
   a("step", "s", row.step, "the first, largest one: what follows is of this run unless it says otherwise");
   a("steps_taken", "1", row.steps_taken, "");
-  a("relative_drift", "1", row.relative_drift, "drift·duration over the largest energy");
+  a("relative_drift", "1", row.relative_drift, "drift·duration over the size of the energy");
   a("drift_over_oscillation", "1", row.drift_over_oscillation, "");
-  a("relative_oscillation", "1", row.relative_oscillation, "over the largest energy");
+  a("relative_oscillation", "1", row.relative_oscillation, "over the size of the energy");
   a("growth", "1", row.growth, "as in the case");
   a("predicted_growth", "1", row.predicted_growth, "likewise");
   a("drift_exponent", "1", row.drift_exponent,
@@ -121,14 +121,14 @@ void declare(SummaryRow& a, const Row& row) {
   a("drift_exponent_high", "1", row.drift_exponent_high, "upper end");
   a("oscillation_exponent", "1", row.oscillation_exponent, "likewise of the oscillation");
   a("modified_change", "1", row.modified_change,
-    "largest of all runs, over the largest energy; NaN where none is known");
+    "largest of all runs, over the size of the energy; NaN where none is known");
   a("momentum_change", "1", row.momentum_change,
     "largest of all runs, over the largest Σ m‖v‖; NaN with outer forces");
   a("momentum_exponent", "1", row.momentum_exponent,
     "power of t with which it grows: about ½ for a random walk");
   a("angular_momentum_change", "1", row.angular_momentum_change,
     "largest of all runs, over the largest Σ ‖x‖ m‖v‖");
-  a("balance", "1", row.balance, "at the end, over the largest energy; NaN without dampers");
+  a("balance", "1", row.balance, "at the end, over the size of the energy; NaN without dampers");
   a("balance_exponent", "1", row.balance_exponent, "power of h of the balance at the end");
   a("balance_exponent_low", "1", row.balance_exponent_low, "");
   a("balance_exponent_high", "1", row.balance_exponent_high, "");

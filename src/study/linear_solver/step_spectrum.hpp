@@ -4,7 +4,7 @@
 
 namespace fw::study {
 
-/// All eigenvalues of the symmetric positive definite matrix of an implicit step, in rising order.
+/// All eigenvalues of the symmetric positive definite matrix of an implicit step, in ascending order.
 struct StepSpectrum {
   Vector eigenvalues;               ///< of A [kg]
   Vector eigenvalues_block_jacobi;  ///< of L⁻¹ A L⁻ᵀ, L Lᵀ the diagonal blocks of A [1]

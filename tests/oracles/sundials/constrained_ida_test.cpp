@@ -76,7 +76,7 @@ TEST(ConstrainedIda, FollowsThePendulumOfEllipticFunctionsToItsTolerance) {
           solve_constrained(ivp, pendulum.rod(), tolerance(asked), {}, comparison);
       ASSERT_TRUE(result.solution.status.ok()) << result.solution.status.describe();
       EXPECT_EQ(result.solution.time, ivp.t1);
-      // Within what the motion makes of an initial angle that is off by the tolerance; up to 60 degrees
+      // Within the error caused by perturbing the initial angle by the tolerance; up to 60 degrees
       // within the tolerance itself.
       EXPECT_LE(comparison.largest, asked * magnified) << degrees << " degrees";
       if (degrees <= 60.0) {
