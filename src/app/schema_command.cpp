@@ -39,11 +39,13 @@ settings::SectionDescription scene_description() {
 
 /// The methods with their options in brackets, as if they were tables.
 settings::SectionDescription options_description() {
-  settings::SectionDescription all{
-      .info = {"method-options", "Options of methods, as in `newmark[beta=0.3]`."}};
+  settings::SectionDescription all;
+  all.info = {"method-options", "Options of methods, as in `newmark[beta=0.3]`."};
   for (const catalog::MethodEntry& entry : catalog::methods()) {
     if (entry.options.empty()) continue;
-    all.sections.push_back({.info = {entry.name, entry.info().title}, .settings = entry.options});
+    settings::SectionDescription& options = all.sections.emplace_back();
+    options.info = {entry.name, entry.info().title};
+    options.settings = entry.options;
   }
   return all;
 }

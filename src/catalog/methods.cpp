@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "catalog/declared_options.hpp"
 #include "catalog/integrator_options.hpp"
@@ -197,6 +198,48 @@ std::vector<MethodEntry> make_list() {
   return list;
 }
 
+/// What other programs and books call our methods (MATLAB, SciPy, Hairer's codes, graphics); of foreign ones the name
+/// without its library.
+std::string our_name_of(const std::string& name) {
+  static const std::map<std::string, std::string> names = {
+      {"euler", "explicit_euler"},
+      {"forward_euler", "explicit_euler"},
+      {"backward_euler", "implicit_euler"},
+      {"semi_implicit_euler", "symplectic_euler"},
+      {"leapfrog", "velocity_verlet"},
+      {"stormer_verlet", "velocity_verlet"},
+      {"stoermer_verlet", "velocity_verlet"},
+      {"crank_nicolson", "trapezoidal"},
+      {"runge_kutta", "rk4"},
+      {"runge_kutta_4", "rk4"},
+      {"rk2", "midpoint"},
+      {"rk23", "bogacki_shampine_32"},
+      {"ode23", "bogacki_shampine_32"},
+      {"rk45", "dormand_prince_54"},
+      {"ode45", "dormand_prince_54"},
+      {"dopri5", "dormand_prince_54"},
+      {"dopri853", "dormand_prince_853"},
+      {"dop853", "dormand_prince_853"},
+      {"rkf45", "fehlberg_54"},
+      {"tsit5", "tsitouras_54"},
+      {"vern6", "verner_65"},
+      {"radau", "radau_iia3"},
+      {"radau5", "radau_iia3"},
+      {"ode15s", "sundials:cvode_bdf"},
+      {"lsoda", "sundials:cvode_bdf"},
+      {"generalized_alpha", "generalised_alpha"},
+      {"hht", "hht_alpha"},
+      {"avf", "average_vector_field"},
+      {"pbd", "xpbd"},
+  };
+  if (const auto found = names.find(name); found != names.end()) return found->second;
+  for (const MethodEntry& entry : methods()) {
+    const auto colon = entry.name.find(':');
+    if (colon != std::string::npos && entry.name.substr(colon + 1) == name) return entry.name;
+  }
+  return "";
+}
+
 }  // namespace
 
 const std::vector<MethodEntry>& methods() {
@@ -210,8 +253,10 @@ const MethodEntry& find_method(const std::string& name) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  throw InputError(fmt::format("unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
-                               did_you_mean(name, names)));
+  const std::string ours = our_name_of(name);
+  throw InputError(fmt::format(
+      "unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
+      ours.empty() ? did_you_mean(name, names) : fmt::format("; it is called \"{}\" here", ours)));
 }
 
 namespace {

@@ -2,7 +2,19 @@
 
 namespace fw::settings {
 
-Describer::Describer(SectionInfo root) : root_{std::move(root)}, places_{&root_} {}
+namespace {
+
+SectionDescription section_of(SectionInfo info, bool is_list = false, bool is_free = false) {
+  SectionDescription section;
+  section.info = std::move(info);
+  section.is_list = is_list;
+  section.is_free = is_free;
+  return section;
+}
+
+}  // namespace
+
+Describer::Describer(SectionInfo root) : root_(section_of(std::move(root))), places_{&root_} {}
 
 void Describer::visit(const Setting& setting) {
   const SettingInfo& info = setting.info();
@@ -18,18 +30,18 @@ SectionDescription Describer::inside_of(SectionDescription section, const std::f
 }
 
 void Describer::visit_section(const SectionInfo& info, const std::function<void()>& inside) {
-  SectionDescription section = inside_of({.info = info}, inside);
+  SectionDescription section = inside_of(section_of(info), inside);
   places_.back()->sections.push_back(std::move(section));
 }
 
 void Describer::visit_section_of_list(const SectionInfo& info, std::size_t,
                                       const std::function<void()>& inside) {
-  SectionDescription section = inside_of({.info = info, .is_list = true}, inside);
+  SectionDescription section = inside_of(section_of(info, true), inside);
   places_.back()->sections.push_back(std::move(section));
 }
 
 void Describer::visit_free_section(const SectionInfo& info) {
-  places_.back()->sections.push_back({.info = info, .is_free = true});
+  places_.back()->sections.push_back(section_of(info, false, true));
 }
 
 void Describer::add_choice(std::string key, const std::vector<Form>& forms) {

@@ -1,5 +1,6 @@
 #include "catalog/method_call.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "catalog/methods.hpp"
@@ -20,6 +21,50 @@ std::string refusal_of(const std::string& text, bool make = false) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST(MethodCall, OfAnotherProgramsNameIsToldOurs) {
+  for (const char* name : {"euler",
+                           "forward_euler",
+                           "backward_euler",
+                           "semi_implicit_euler",
+                           "leapfrog",
+                           "stormer_verlet",
+                           "stoermer_verlet",
+                           "crank_nicolson",
+                           "runge_kutta",
+                           "runge_kutta_4",
+                           "rk2",
+                           "rk23",
+                           "ode23",
+                           "rk45",
+                           "ode45",
+                           "dopri5",
+                           "dopri853",
+                           "dop853",
+                           "rkf45",
+                           "tsit5",
+                           "vern6",
+                           "radau",
+                           "radau5",
+                           "ode15s",
+                           "lsoda",
+                           "generalized_alpha",
+                           "hht",
+                           "avf",
+                           "pbd",
+                           "cvode_bdf",
+                           "ida",
+                           "ts_rosw",
+                           "msbdf"}) {
+    const std::string message = refusal_of(name, true);
+    const std::string start = fmt::format("unknown method \"{}\"; it is called \"", name);
+    ASSERT_TRUE(message.starts_with(start)) << message;
+    const std::string ours = message.substr(start.size(), message.find('"', start.size()) - start.size());
+    EXPECT_EQ(find_method(ours).name, ours);
+  }
+  EXPECT_TRUE(refusal_of("rk5", true).starts_with("unknown method \"rk5\"; did you mean"))
+      << refusal_of("rk5", true);
 }
 
 TEST(MethodCall, IsANameAlone) {

@@ -247,6 +247,10 @@ FieldGrid field_grid(const FieldSpec& field, const CheckedTable& table, const Iv
 
 /// Throws InputError where the method cannot go through the interval with this step.
 void check_step(const MethodInfo& info, const Ivp& ivp, double step) {
+  if (step > ivp.t1 - ivp.t0) {
+    throw InputError(
+        fmt::format("found {}, expected at most the whole interval of {:.6g} s", step, ivp.t1 - ivp.t0));
+  }
   if (info.is_multistep) {
     count_whole_steps(info.name, ivp.t0, ivp.t1, step);
   } else {
