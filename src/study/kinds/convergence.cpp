@@ -202,6 +202,13 @@ class ConvergenceCase {
                        [&](const Level& level) { return level.error.relative < meter_->floor(); });
   }
 
+  bool has_many_errors() const {
+    constexpr auto many = 6;
+    return std::count_if(levels_.begin(), levels_.end(), [&](const Level& level) {
+             return level.error.relative > 10.0 * meter_->floor();
+           }) >= many;
+  }
+
   bool is_measured() const {
     if (!is_second_order()) return fit(&StateError::relative, 1.0).valid;
     return fit(&StateError::position, scale().position).valid &&
@@ -258,6 +265,8 @@ class ConvergenceCase {
                                                            meter_->reference_error(), reason));
     }
     if (holds && measured) return conclude(Verdict::holds, reason);
+    // Errors that stand clear of the floor at many steps and yet follow no power refute the order: they stop falling.
+    if (!measured && has_many_errors()) refuted = true;
     if (refuted && has_kinks()) {
       return conclude(Verdict::not_applicable, reason + "; forces with kinks lower the order");
     }

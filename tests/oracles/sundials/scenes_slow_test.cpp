@@ -19,7 +19,7 @@ namespace fw::oracles {
 namespace {
 
 /// Cloths and grids for a few steps of the implicit methods only.
-constexpr Index large = 300;  ///< unknowns
+constexpr Index small = 200, large = 300;  ///< unknowns
 
 double end_time(const scene::Scene& scene) {
   return 6 * static_cast<Index>(scene.model.mass.size()) > large ? 0.002 : 0.1;
@@ -52,7 +52,7 @@ Estimate refined(const Integrator& method, const Ivp& ivp, bool has_kinks) {
   };
   const bool is_adaptive = method.info().is_adaptive;
   const auto control = [&](int refinement) -> StepControl {
-    const int steps = ivp.y0.size() > large ? 4 : ivp.y0.size() > large / 2 ? 25 : 100;
+    const int steps = ivp.y0.size() > large ? 4 : ivp.y0.size() > small ? 25 : 100;
     if (!is_adaptive) return FixedStep{.step = std::ldexp((ivp.t1 - ivp.t0) / steps, -refinement)};
     const double tolerance = refinement > 0 ? 1e-9 : 1e-7;
     return AdaptiveStep{.relative_tolerance = tolerance, .absolute_tolerance = 1e-2 * tolerance};
@@ -77,7 +77,7 @@ TEST_P(Scenes, EndWhereCvodeEndsThemByEveryMethodThatApplies) {
   methods.push_back(make_arkode_mri());
   methods.push_back(make_arkode_mri({.inner_steps = 0}));
   methods.push_back(
-      make_arkode_mri({.inner_is_implicit = true, .inner_steps = ivp.y0.size() > large / 2 ? 5 : 20}));
+      make_arkode_mri({.inner_is_implicit = true, .inner_steps = ivp.y0.size() > small ? 5 : 20}));
   methods.push_back(make_ida());
   const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system);
   const bool has_kinks = system.elements().has_kinks();
