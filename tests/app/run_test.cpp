@@ -85,6 +85,40 @@ TEST_F(Run, ExitsWith1WhereAVerdictFails) {
   EXPECT_EQ(run_study("r").exit_code, 1);
 }
 
+TEST_F(Run, StrictCountsWhatIsNotApplicable) {
+  // A method of mechanics on an equation of first order.
+  write_bytes(
+      scratch_ / "s.toml",
+      "kind = 'convergence'\ntitle = 'orders'\nmethods = ['velocity_verlet']\n[convergence]\nlevels = 6\n"
+      "[[problem]]\nname = 'rotation'\nt_end = 2.3\n");
+  const ProcessResult result = run_study("r");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("0 hold, 0 fail, 1 not applicable"));
+  EXPECT_EQ(run_study("r", {"--strict"}).exit_code, 1);
+  write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
+  EXPECT_EQ(run_study("q", {"--strict"}).exit_code, 0);
+}
+
+TEST_F(Run, AnExplosionIsAPictureButNoSuccess) {
+  write_bytes(
+      scratch_ / "s.toml",
+      "kind = 'simulate'\ntitle = 'motion'\nmethods = ['explicit_euler', 'velocity_verlet']\nsteps = [0.1]\n"
+      "[[problem]]\nname = 'harmonic_oscillator'\nt_end = 200.0\n");
+  const ProcessResult result = run_study("r");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  inspect(
+      "assert list(f['summary/verdict'][()]) == [b'not applicable', b'holds']\n"
+      "assert list(f['summary/status'][()]) == [b'blow_up', b'success']\n"
+      "assert b'grows by the factor' in f['summary/reason'][0]\n",
+      {file("r/s.h5")});
+  write_bytes(scratch_ / "s.toml",
+              "kind = 'simulate'\ntitle = 'motion'\nmethods = ['rk4']\nsteps = [1000.0]\n"
+              "[[problem]]\nname = 'harmonic_oscillator'\nt_end = 1.0\n");
+  const ProcessResult too_long = run_study("r");
+  EXPECT_EQ(too_long.exit_code, 2);
+  EXPECT_THAT(too_long.err, HasSubstr("found 1000, expected at most the whole interval of 1 s"));
+}
+
 TEST_F(Run, KeepsFinishedCasesUnlessForced) {
   write_bytes(scratch_ / "s.toml", convergence("levels = 6"));
   EXPECT_EQ(count(run_study("r").out, "(kept)"), 0U);

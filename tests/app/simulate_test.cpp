@@ -73,6 +73,21 @@ assert f['counters/accepted_steps'][()] == 100 and f['counters/rhs_evaluations']
           {file("a.h5")});
 }
 
+TEST_F(Simulate, SaysThatAnExplosionBelowEveryBoundIsNoSuccess) {
+  write_bytes(scratch_ / "s.toml",
+              "[world]\ngravity = [0, 0, -9.81]\n[particles]\nposition = [[0, 0, 0], [1, 0, 0]]\nmass = "
+              "1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0, 1]]\nstiffness = 1e4\n");
+  const ProcessResult result =
+      simulate("a.h5", {"--method", "velocity_verlet", "--step", "0.05", "--t-end", "1"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("blow_up: the energy grows by the factor"), HasSubstr("a.h5")));
+  EXPECT_TRUE(std::filesystem::exists(scratch_ / "a.h5"));
+  const ProcessResult stable =
+      simulate("b.h5", {"--method", "velocity_verlet", "--step", "0.005", "--t-end", "1"});
+  EXPECT_EQ(stable.exit_code, 0) << stable.err;
+}
+
 TEST_F(Simulate, Stores101FramesUnlessAskedOtherwise) {
   EXPECT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.001", "--t-end", "1"}).exit_code, 0);
   inspect("assert f['trajectory/time'].shape == (101,)\n", {file("a.h5")});
