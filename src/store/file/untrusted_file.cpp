@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <stdexcept>
 #include <vector>
 
@@ -15,6 +17,14 @@ namespace fw::store {
 
 namespace {
 
+/// Bytes of address space that are in use: libraries alone map more than a gigabyte, a sanitizer terabytes.
+rlim_t mapped_bytes() {
+  std::ifstream pages("/proc/self/statm");
+  rlim_t count = 0;
+  pages >> count;
+  return count * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
 /// Memory and processor time that reading so many bytes may cost at most, in the child.
 void bound_this_process(std::uint64_t file_size) {
   const auto bound = [](__rlimit_resource_t resource, rlim_t value) {
@@ -23,7 +33,7 @@ void bound_this_process(std::uint64_t file_size) {
     limit.rlim_cur = std::min(limit.rlim_max, value);
     ::setrlimit(resource, &limit);
   };
-  bound(RLIMIT_AS, (rlim_t{4} << 30) + 4 * file_size);  // the libraries alone map more than a gigabyte
+  bound(RLIMIT_AS, mapped_bytes() + (rlim_t{1} << 30) + 4 * file_size);
   bound(RLIMIT_CPU, 10 + file_size / 20'000'000);
   bound(RLIMIT_CORE, 0);
 }
