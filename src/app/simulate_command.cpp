@@ -303,14 +303,19 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     options.checkpoints = &*checkpoints;
   }
   record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
-  study::EnergyWatch watch(study::EnergyGauge(*system), sink);
-  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, watch);
+  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
+  SimulationObserver observer(frames, arguments.end_time);
+  study::EnergyWatch watch(study::EnergyGauge(*system), observer);
   if (from) {
-    repeat_frames(*from, frames, watch);
+    repeat_frames(*from, frames, sink);
+    const auto size = static_cast<std::size_t>(ivp.y0.size());
+    for (std::size_t k = 0; k < from->frame_times.size(); ++k) {
+      watch.add_earlier(from->frame_times[k],
+                        ConstVectorMap(from->frame_states.data() + k * size, static_cast<Index>(size)));
+    }
     options.resume = from->run;
   }
-  SimulationObserver observer(frames, arguments.end_time);
-  Solution solution = integrator->solve(ivp, control, observer, options);
+  Solution solution = integrator->solve(ivp, control, watch, options);
   observer.finish();
   solution.status = watch.judged(solution.status);
   writer.finish(solution.status, solution.work);
@@ -319,7 +324,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (!solution.status.ok()) {
     fmt::print(stderr, "federwerk: {}; what was computed is in {}{}\n", solution.status.describe(),
                arguments.output,
-               checkpoints && checkpoints->written() > 0
+               checkpoints && checkpoints->written() > 0 && solution.status.code != StatusCode::blow_up
                    ? fmt::format("; --continue {} goes on from the last checkpoint", arguments.checkpoint)
                    : "");
     return exit_failure;

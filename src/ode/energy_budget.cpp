@@ -17,8 +17,7 @@ void EnergyBudget::add(const Energies& energies) {
 
 void EnergyBudget::add(double kinetic, double at_rest_zero, double outer) {
   const double total = kinetic + at_rest_zero + outer;
-  if (!has_started_) {
-    has_started_ = true;
+  if (states_++ == 0) {
     start_ = total;
     outer_start_ = outer;
   }
@@ -29,6 +28,11 @@ void EnergyBudget::add(double kinetic, double at_rest_zero, double outer) {
   sum_ = std::max(sum_, stored + std::abs(outer));
 }
 
+void EnergyBudget::add_rounding(double virial, double jitter) {
+  virial_ = std::max(virial_, virial);
+  jitter_ = std::max(jitter_, jitter);
+}
+
 double EnergyBudget::growth_factor() const {
   if (gain_ <= 0.0) return 1.0;
   const double before = scale_ - gain_;
@@ -37,9 +41,11 @@ double EnergyBudget::growth_factor() const {
 
 bool EnergyBudget::has_exploded() const {
   constexpr double share = 0.99;
-  // A system at rest gains what rounding leaves.
-  constexpr double rounding = 1e-9;
-  return gain_ > rounding * magnitude() && gain_ >= share * scale_;
+  // One step of explicit Euler from rest gains all that there is; 1/n of it is left after n steps.
+  constexpr std::uint64_t few = 10;
+  // A system at rest gains what rounding leaves: jitter that adds up for a while.
+  constexpr double rounding = 1e-9, added_up = 1e6;
+  return states_ > few && gain_ > rounding * magnitude() + added_up * jitter_ && gain_ >= share * scale_;
 }
 
 }  // namespace fw

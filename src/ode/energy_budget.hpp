@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "ode/energies.hpp"
 
 namespace fw {
@@ -23,8 +25,9 @@ class EnergyBudget {
   void add(const Energies& energies);
   /// The same where only these three are known [J].
   void add(double kinetic, double at_rest_zero, double outer);
-  /// √(Σ_i (f_i q_i)²) over the coordinates of a state [J].
-  void add_position_rounding(double virial) { virial_ = virial > virial_ ? virial : virial_; }
+  /// What rounding does to a state [J]: `virial` = √(Σ_i (f_i q_i)²) over the coordinates, and `jitter` =
+  /// Σ_i m_i (ε q_i/h)², the energy of velocities that move a coordinate by its last digit per step.
+  void add_rounding(double virial, double jitter);
 
   double start() const { return start_; }    ///< total at the start [J]
   double change() const { return change_; }  ///< of the total since the start, of the last state [J]
@@ -34,14 +37,15 @@ class EnergyBudget {
 
   /// By how much the energy has multiplied without any source: scale/(scale − gain), 1 where nothing was gained.
   double growth_factor() const;
-  /// Whether 99 % of the energy and more has come from nowhere. Only for systems without outer sources of energy
-  /// other than gravity: dampers can only take.
+  /// Whether 99 % of the energy and more has come from nowhere, over more than a few states and beyond what
+  /// rounding does to a system at rest. Only for systems without outer sources of energy other than gravity:
+  /// dampers can only take.
   bool has_exploded() const;
 
  private:
-  bool has_started_ = false;
+  std::uint64_t states_ = 0;
   double start_ = 0.0, outer_start_ = 0.0, change_ = 0.0;
-  double scale_ = 0.0, sum_ = 0.0, virial_ = 0.0, gain_ = 0.0;
+  double scale_ = 0.0, sum_ = 0.0, virial_ = 0.0, jitter_ = 0.0, gain_ = 0.0;
 };
 
 }  // namespace fw

@@ -14,7 +14,11 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path), source_(o
   const std::string name = fmt::format("\"{}\"", path.string());
   const std::optional<Superblock> start = read_superblock(*source_);
   if (!start) throw InputError(name + " is not an HDF5 file");
-  const std::uint64_t size = source_->size(), content = start->end_of_content.value_or(size);
+  if (!start->end_of_content) {
+    throw InputError(name +
+                     " has an HDF5 superblock of another version, expected 0 to 3 with addresses of 8 bytes");
+  }
+  const std::uint64_t size = source_->size(), content = *start->end_of_content;
   if (size < content) {
     throw InputError(fmt::format("{} is truncated: it has {} bytes, its content {}", name, size, content));
   }

@@ -88,6 +88,33 @@ TEST_F(Simulate, SaysThatAnExplosionBelowEveryBoundIsNoSuccess) {
   EXPECT_EQ(stable.exit_code, 0) << stable.err;
 }
 
+TEST_F(Simulate, ASystemAtRestOrBetweenTwoFramesIsNoExplosion) {
+  // Rest lengths that are off by the last digit: rounding alone moves it.
+  write_bytes(scratch_ / "s.toml",
+              "[particles]\nposition = [[0, 0, 0], [0.1, 0.2, 0.2]]\nmass = 1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0, 1]]\nstiffness = 100\nrest_length = 0.3\n");
+  for (const char* step : {"1e-3", "1e-5", "0.1"}) {
+    const ProcessResult rest =
+        simulate("a.h5", {"--method", "velocity_verlet", "--step", step, "--t-end", "0.5"});
+    EXPECT_EQ(rest.exit_code, 0) << step << rest.err;
+  }
+  // A swing from rest to rest, of which the file has both ends only; and one step from rest.
+  write_bytes(scratch_ / "s.toml",
+              "[world]\ngravity = [0, 0, -9.81]\n[particles]\nposition = [[0, 0, 0], [1, 0, 0]]\nmass = "
+              "1\nfixed = [0]\n"
+              "[springs]\nbetween = [[0, 1]]\nstiffness = 1e4\n");
+  const ProcessResult swing =
+      simulate("b.h5", {"--method", "rk4", "--step", "1e-3", "--t-end", "2.37", "--frames", "2"});
+  EXPECT_EQ(swing.exit_code, 0) << swing.err;
+  const ProcessResult one =
+      simulate("c.h5", {"--method", "explicit_euler", "--step", "1e-3", "--t-end", "1e-3"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  // An explosion that the frames do not show is seen.
+  const ProcessResult hidden =
+      simulate("d.h5", {"--method", "velocity_verlet", "--step", "0.05", "--t-end", "1", "--frames", "2"});
+  EXPECT_EQ(hidden.exit_code, 3) << hidden.err;
+}
+
 TEST_F(Simulate, Stores101FramesUnlessAskedOtherwise) {
   EXPECT_EQ(simulate("a.h5", {"--method", "rk4", "--step", "0.001", "--t-end", "1"}).exit_code, 0);
   inspect("assert f['trajectory/time'].shape == (101,)\n", {file("a.h5")});

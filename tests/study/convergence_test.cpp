@@ -189,11 +189,17 @@ TEST(Convergence, IsNotApplicableWhereNothingCanBeMeasured) {
   const CaseResult exact = order_on("velocity_verlet", fall, 1.0);
   EXPECT_EQ(exact.verdict, Verdict::not_applicable) << exact.reason;
   EXPECT_THAT(exact.reason, HasSubstr("exact on this problem"));
+  // Of symplectic Euler the velocities are exact in free fall, and the positions show its order.
+  const CaseResult half = order_on("symplectic_euler", fall, 1.0);
+  EXPECT_EQ(half.verdict, Verdict::holds) << half.reason;
+  EXPECT_THAT(half.reason, HasSubstr("velocity: exact on this problem"));
   const std::string spring =
       "[particles]\nposition = [[0, 0, 0], [1.3, 0, 0]]\nmass = 1.0\nfixed = [0]\n"
       "[springs]\nbetween = [[0, 1]]\nrest_length = 1.0\nstiffness = 1.0\n";
   const CaseResult overdamped = order_on("rk4", spring + "damping = 1e4\n", 1.0, "max_steps = 4096\n");
   EXPECT_EQ(overdamped.verdict, Verdict::not_applicable) << overdamped.reason;
+  EXPECT_EQ(order_on("explicit_euler", spring, 4.0, "max_steps = 100\nstart_error = 1e-6\n").verdict,
+            Verdict::not_applicable);
   const CaseResult kinks = order_on(
       "rk4",
       spring +

@@ -55,8 +55,7 @@ class OrderMeasurement {
     const double ratio = expected_ >= 4 ? 1.15 : 1.3;
     const double floor = extended_ ? std::max(1e-27, 100.0 * relative_reference_error()) : 2e-12;
     const double most_steps = extended_ ? 3000.0 : 30000.0;
-    const double fewest_steps =
-        extended_ ? 100.0 : 300.0;  // without rounding, slopes that agree are the order's
+    constexpr double fewest_steps = 300.0;
     int at_floor = 0;
     double last_count = 0.0;
     for (double count = 8.0; count <= most_steps && at_floor < 2; count *= ratio) {

@@ -65,12 +65,7 @@ void EnergyObserver::watch_size(const StepView& view, double value) {
   }
   watched_.gauge.add(view.time, view.state, budget_);
   if (view.index != 0 && !ends_bin(view)) return;
-  const SecondOrderSystem& system = *watched_.gauge.system();
-  const Index n = system.degrees_of_freedom();
-  const auto q = view.state.head(n), v = view.state.tail(n);
-  force_.resize(n);
-  system.force(view.time, q, v, force_);
-  budget_.add_position_rounding(force_.cwiseProduct(q).norm());
+  watched_.gauge.add_rounding(view.time, view.state, step_, budget_);
 }
 
 bool EnergyObserver::observe(const StepView& view) {

@@ -67,7 +67,6 @@ class EnergyObserver final : public Observer {
   double step_;
   std::uint64_t steps_, bins_;
   EnergyBudget budget_;
-  Vector force_;
   double first_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
   analysis::BinnedSeries change_;

@@ -139,28 +139,26 @@ void judge_symplectic(const std::vector<EnergyRun>& runs, Findings& findings) {
   bool holds = true;
   for (const EnergyRun& run : runs) {
     const analysis::Drift& drift = run.drift;
-    if (run.has_blown_up()) continue;
+    if (run.has_blown_up() || !run.status.ok()) continue;
     // Without an oscillation inside the batches there is nothing to hold a trend against.
     const bool has_short_batches =
         !drift.valid || run.seen->steps_taken() < 2 * static_cast<std::uint64_t>(drift.batches);
-    if (run.status.ok() && has_short_batches) continue;
+    if (has_short_batches) continue;
     const bool within_rounding = std::abs(drift.slope) * drift.duration <= rounding_bound(run);
-    const bool fine = run.status.ok() && drift.valid &&
-                      (within_rounding || !drift.is_significant(runs.size()) || drift.significance() <= 0.1);
+    const bool fine = within_rounding || !drift.is_significant(runs.size()) || drift.significance() <= 0.1;
     if (worst == nullptr || !fine || (holds && drift.significance() > worst->drift.significance()))
       worst = &run;
     holds = holds && fine;
     if (!fine) break;
   }
   if (worst == nullptr) {
-    findings.leave_open("no secular drift is not judged: every run blows up or has too few steps per batch");
+    findings.leave_open(
+        "no secular drift is not judged: every run failed, blew up or has too few steps per batch");
     return;
   }
-  findings.require(
-      holds, worst->status.ok()
-                 ? fmt::format("no secular drift: {:.2g} of the oscillation over {} steps at h = {:.4g}",
-                               worst->drift.significance(), worst->steps, worst->step)
-                 : fmt::format("the run at h = {:.4g} ended with {}", worst->step, worst->status.describe()));
+  findings.require(holds,
+                   fmt::format("no secular drift: {:.2g} of the oscillation over {} steps at h = {:.4g}",
+                               worst->drift.significance(), worst->steps, worst->step));
 }
 
 /// Statements about powers of h allow this much below the power.
@@ -176,8 +174,10 @@ void judge_exponent(const char* what, const StepExponent& exponent, int order, b
   const std::string claim = fmt::format("at least h^{} is predicted", order);
   if (exponent.points < 3) {
     findings.leave_open(
-        fmt::format("{} is measurable above rounding at {} of the steps, expected three or more; {}", what,
-                    exponent.points, claim));
+        fmt::format("{} is clear (above rounding, a trend or defect that is measurable, most of the energy "
+                    "left) at {} of the steps, "
+                    "expected three or more; {}",
+                    what, exponent.points, claim));
     return;
   }
   const std::string text = fmt::format("{} falls with h^{:.2f} [{:.2f}, {:.2f}] over {} steps, {}", what,

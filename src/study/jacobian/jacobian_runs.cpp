@@ -14,9 +14,9 @@ namespace {
 using mechanics::MassSpringSystem;
 
 /// The largest rise of the total energy over that at the start, and the largest distance from the origin.
-class EnergyWatch final : public Observer {
+class RiseOfEnergy final : public Observer {
  public:
-  explicit EnergyWatch(const MassSpringSystem& system) : system_(system) {}
+  explicit RiseOfEnergy(const MassSpringSystem& system) : system_(system) {}
 
   bool observe(const StepView& view) override {
     const Index n = system_.degrees_of_freedom();
@@ -65,7 +65,7 @@ CaseResult run_compressed(const StudyProblem& problem, const std::string& call, 
   std::string first_failure;
   std::int64_t gaining = 0;
   for (const double step : settings.steps) {
-    EnergyWatch watch(system);
+    RiseOfEnergy watch(system);
     const Solution solution = context.solve(integrator, ivp, FixedStep{.step = step}, watch);
     status.emplace_back(to_string(solution.status.code));
     end.push_back(solution.time);

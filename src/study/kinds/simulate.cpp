@@ -74,9 +74,9 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
                           const RunContext& context) {
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
-  EnergyWatch watch(EnergyGauge(entry.problem), columns);
-  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, watch);
-  Solution solution = context.solve(integrator, ivp, control, selector);
+  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
+  EnergyWatch watch(EnergyGauge(entry.problem), selector);
+  Solution solution = context.solve(integrator, ivp, control, watch);
   const bool reached_end = solution.status.ok();
   solution.status = watch.judged(solution.status);
 

@@ -3,8 +3,8 @@
 #include "core/status.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "ode/energy_budget.hpp"
+#include "ode/observer.hpp"
 #include "problems/problem.hpp"
-#include "record/frame_sink.hpp"
 
 namespace fw::study {
 
@@ -20,8 +20,9 @@ class EnergyGauge {
   bool is_known() const { return system_ != nullptr; }
   /// Adds the energies of a state y = (q, v). Only where `is_known`.
   void add(double t, ConstVectorRef y, EnergyBudget& budget) const;
+  /// Adds what rounding does to a state, for steps of h [s]. Only where `is_known`; costs an evaluation of the forces.
+  void add_rounding(double t, ConstVectorRef y, double h, EnergyBudget& budget) const;
   const mechanics::MassSpringSystem* springs() const { return springs_; }
-  const SecondOrderSystem* system() const { return system_; }
 
  private:
   const mechanics::MassSpringSystem* springs_ = nullptr;
@@ -29,20 +30,24 @@ class EnergyGauge {
   const Problem* problem_ = nullptr;
 };
 
-/// Passes frames on and keeps the account of their energies: a run whose energy multiplies from nowhere is no
-/// success, however finite its numbers are.
-class EnergyWatch final : public record::FrameSink {
+/// Keeps the account of a run's energies before it passes the steps on: a run whose energy multiplies from nowhere
+/// is no success, however finite its numbers are. Looks at the first 64 steps, every sixteenth and the last: at all of
+/// them it would cost as much as an evaluation of the forces per step.
+class EnergyWatch final : public Observer {
  public:
-  EnergyWatch(EnergyGauge gauge, record::FrameSink& next) : gauge_(gauge), next_(next) {}
+  EnergyWatch(EnergyGauge gauge, Observer& next) : gauge_(gauge), next_(next) {}
 
-  void frame(double time, ConstVectorRef state) override;
+  bool observe(const StepView& view) override;
+  /// A state before the first step that is observed: of a run that goes on from a checkpoint.
+  void add_earlier(double time, ConstVectorRef state);
   /// `status`, or blow_up with the factor by which the energy has grown.
   Status judged(const Status& status) const;
 
  private:
   EnergyGauge gauge_;
-  record::FrameSink& next_;
+  Observer& next_;
   EnergyBudget budget_;
+  double start_time_ = 0.0;
 };
 
 }  // namespace fw::study
