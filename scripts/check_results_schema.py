@@ -156,12 +156,17 @@ def check(document, path):
                 yield from check_presence(group, row, members[group])
 
 
+def report(description, paths):
+    """Prints the deviations of files from the text of a description; the exit code."""
+    deviations = [f"{path}: {line}" for path in paths for line in check(description, path)]
+    print("\n".join(deviations) if deviations else f"{len(paths)} file(s) as described")
+    return 1 if deviations else 0
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as document:
         description = document.read()
-    deviations = [f"{path}: {line}" for path in sys.argv[2:] for line in check(description, path)]
-    print("\n".join(deviations) if deviations else f"{len(sys.argv) - 2} file(s) as described")
-    sys.exit(1 if deviations else 0)
+    sys.exit(report(description, sys.argv[2:]))
 
 
 if __name__ == "__main__":

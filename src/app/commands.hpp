@@ -25,5 +25,6 @@ void add_verify_command(CLI::App& app, Action& action, const std::string& comman
 void add_show_command(CLI::App& app, Action& action);
 void add_schema_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
+void add_equilibrium_command(CLI::App& app, Action& action, const std::string& command_line);
 
 }  // namespace fw::app

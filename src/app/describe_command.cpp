@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "app/commands.hpp"
+#include "app/describe_scene.hpp"
 #include "app/method_json.hpp"
 #include "catalog/declared_options.hpp"
 #include "catalog/methods.hpp"
@@ -202,6 +203,7 @@ std::string describe(const std::string& name, bool as_json) {
     }
     names.push_back(entry.name);
   }
+  if (name.ends_with(".toml")) return describe_scene(name, as_json);
   for (const ProblemEntry& entry : catalog::problems()) {
     if (entry.name == name) return as_json ? problem_json(entry) : describe_problem(entry);
     names.push_back(entry.name);
@@ -239,7 +241,9 @@ void add_describe_command(CLI::App& app, Action& action) {
       app.add_subcommand("describe", "Prints all that is known of a method, problem, scene or study kind");
   auto names = std::make_shared<std::vector<std::string>>();
   auto json = std::make_shared<bool>(false);
-  command->add_option("name", *names, "Its name, or several")->required()->type_name("NAME");
+  command->add_option("name", *names, "Its name, or several; of a scene also its file")
+      ->required()
+      ->type_name("NAME");
   command->add_flag("--json", *json, "As JSON; of several names an array");
   command->callback([names, json, &action] {
     action = [names, json] {

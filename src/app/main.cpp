@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
   fw::app::add_show_command(app, action);
   fw::app::add_schema_command(app, action);
   fw::app::add_check_command(app, action);
+  fw::app::add_equilibrium_command(app, action, command_line);
   app.require_subcommand(0, 1);
   app.allow_extras();  // of the top level only, which check_subcommand names more clearly
   try {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "catalog/equilibrium.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "study/catalog.hpp"
@@ -18,6 +19,9 @@ class BuiltinCatalog final : public study::Catalog {
   }
   Problem problem(const std::string& name, const ProblemParameters& parameters) const override {
     return find_problem(name).make(parameters);
+  }
+  Vector equilibrium(const SecondOrderSystem& system, ConstVectorRef position) const override {
+    return require_equilibrium(system, position);
   }
 };
 

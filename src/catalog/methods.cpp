@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "integrators/energy_momentum/discrete_gradient.hpp"
 #include "integrators/special/implicit_euler_linearised.hpp"
+#include "integrators/special/predicted_velocity_verlet.hpp"
 #include "integrators/special/verlet.hpp"
 #include "integrators/tableau/additive_runge_kutta.hpp"
 #include "integrators/tableau/diagonally_implicit_runge_kutta.hpp"
@@ -160,6 +161,9 @@ std::vector<MethodEntry> make_list() {
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::central); }, std::move(verlet)));
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::backward); },
                        verlet_theory(LinearRule::verlet_backward_velocity)));
+  list.push_back(plain(integrators::make_predicted_velocity_verlet,
+                       {.on_position_forces = named(schemes::splitting_schemes(), "velocity_verlet"),
+                        .modified_energy = analysis::velocity_verlet_energy}));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
@@ -245,6 +249,25 @@ std::string our_name_of(const std::string& name) {
 const std::vector<MethodEntry>& methods() {
   static const std::vector<MethodEntry> list = make_list();
   return list;
+}
+
+const std::vector<std::string>& first_methods() {
+  static const std::vector<std::string> names = {"explicit_euler",
+                                                 "symplectic_euler",
+                                                 "verlet",
+                                                 "velocity_verlet",
+                                                 "midpoint",
+                                                 "heun",
+                                                 "rk4",
+                                                 "implicit_euler_linearised",
+                                                 "implicit_euler",
+                                                 "trapezoidal",
+                                                 "implicit_midpoint",
+                                                 "bdf2",
+                                                 "dormand_prince_54",
+                                                 "radau_iia3",
+                                                 "sundials:cvode_bdf"};
+  return names;
 }
 
 const MethodEntry& find_method(const std::string& name) {

@@ -86,6 +86,9 @@ const Data& named(const std::vector<Data>& list, std::string_view name) {
 /// Every method, hand-written ones first, then the oracles. The only place where one is registered.
 const std::vector<MethodEntry>& methods();
 
+/// The methods to start with, as calls: those of the lecture and one good choice of each kind.
+const std::vector<std::string>& first_methods();
+
 /// The entry of that name; throws InputError with the nearest name.
 const MethodEntry& find_method(const std::string& name);
 

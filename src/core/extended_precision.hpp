@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/multiprecision/float128.hpp>
+#include <limits>
 
 #include "core/types.hpp"
 
@@ -9,6 +10,9 @@ namespace fw {
 /// IEEE binary128 (113-bit significand, about 34 decimal digits): the arithmetic of reference solutions.
 /// Functions such as `sqrt` and `sin` are found by argument-dependent lookup.
 using Float128 = boost::multiprecision::float128;
+
+/// 2⁻¹¹², the distance from 1 to the next number.
+inline const Float128 float128_epsilon = std::numeric_limits<Float128>::epsilon();
 
 /// The part of a number by which a right-hand side may branch. Differentiation by a complex step perturbs
 /// the imaginary part only, so a comparison has to look at the real part.

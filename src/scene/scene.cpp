@@ -32,6 +32,7 @@ Scene build_scene(const CheckedTable& root) {
   SceneFile file{root, settings::read(root, spec)};
   Scene scene;
   scene.title = spec.title;
+  scene.starts_at_equilibrium = spec.start == "equilibrium";
   scene.model.gravity = spec.world.gravity;
   scene.model.drag = spec.world.drag;
   std::vector<PointGroup> groups = common_groups();

@@ -16,8 +16,10 @@ namespace fw::scene {
 struct Scene {
   std::string title;
   mechanics::MassSpringModel model;
-  Vector position;                    ///< 3n, xyz after xyz [m]
-  Vector velocity;                    ///< 3n, zero for fixed particles [m/s]
+  Vector position;  ///< 3n, xyz after xyz [m]
+  Vector velocity;  ///< 3n, zero for fixed particles [m/s]
+  /// The run starts at the static equilibrium that is found from `position`.
+  bool starts_at_equilibrium = false;
   std::string resolved_toml;          ///< the input as TOML text with every default filled in
   std::vector<std::string> warnings;  ///< what is legal but has no effect, one sentence each
 };

@@ -249,6 +249,12 @@ void declare(Archive& a, ObstacleSpec& o) {
 
 void declare(Archive& a, SceneSpec& scene) {
   a(setting("title", scene.title).doc("for people"));
+  a(setting("start", scene.start)
+        .choices({"given", "equilibrium"})
+        .default_text("`\"given\"`")
+        .doc("positions at the start: those given, or the static equilibrium that Newton's iteration finds "
+             "from "
+             "them; velocities are those given"));
   a.section({"world", "What acts on every particle."}, scene.world);
   a.optional_section({"generate", "A standard system, in place of [particles] and [springs]."},
                      scene.generate);

@@ -90,6 +90,7 @@ void declare(settings::Archive& a, ObstacleSpec& obstacle);
 /// A scene file.
 struct SceneSpec {
   std::string title;
+  std::optional<std::string> start;
   WorldSpec world;
   std::optional<GenerateSpec> generate;
   std::optional<ParticlesSpec> particles;

@@ -57,6 +57,104 @@ std::string expectation(const SettingInfo& info) {
   return "";
 }
 
+template Setting::Setting(std::string_view, double&);
+template Setting::Setting(std::string_view, int&);
+template Setting::Setting(std::string_view, std::int64_t&);
+template Setting::Setting(std::string_view, std::uint64_t&);
+template Setting::Setting(std::string_view, bool&);
+template Setting::Setting(std::string_view, std::string&);
+template Setting::Setting(std::string_view, Vec3<double>&);
+template Setting::Setting(std::string_view, std::vector<double>&);
+template Setting::Setting(std::string_view, std::vector<std::int64_t>&);
+template Setting::Setting(std::string_view, std::vector<std::string>&);
+template Setting::Setting(std::string_view, std::optional<double>&);
+template Setting::Setting(std::string_view, std::optional<std::int64_t>&);
+template Setting::Setting(std::string_view, std::optional<std::string>&);
+template Setting::Setting(std::string_view, std::optional<std::vector<double>>&);
+template Setting::Setting(std::string_view, std::optional<std::vector<std::string>>&);
+
+Setting::Setting(const Setting&) = default;
+Setting::Setting(Setting&&) noexcept = default;
+Setting& Setting::operator=(const Setting&) = default;
+Setting& Setting::operator=(Setting&&) noexcept = default;
+Setting::~Setting() = default;
+
+Setting& Setting::unit(std::string_view text) {
+  return info_.unit = text, *this;
+}
+
+Setting& Setting::doc(std::string_view text) {
+  return info_.doc = text, *this;
+}
+
+Setting& Setting::required() {
+  return info_.is_required = true, *this;
+}
+
+Setting& Setting::default_text(std::string_view text) {
+  return info_.default_text = text, *this;
+}
+
+Setting& Setting::positive() {
+  return info_.range = NumberRule::positive, *this;
+}
+
+Setting& Setting::nonnegative() {
+  return info_.range = NumberRule::nonnegative, *this;
+}
+
+Setting& Setting::between(double lowest, double highest) {
+  return info_.range = {lowest, highest}, *this;
+}
+
+Setting& Setting::at_least_number(double lowest) {
+  return info_.range.lowest = lowest, *this;
+}
+
+Setting& Setting::up_to(double bound) {
+  return info_.range.highest = bound, *this;
+}
+
+Setting& Setting::at_least(std::int64_t lowest) {
+  return info_.lowest = lowest, *this;
+}
+
+Setting& Setting::choices(std::vector<std::string> names) {
+  return info_.choices = std::move(names), *this;
+}
+
+Setting& Setting::names_of(std::string_view what) {
+  return info_.names_of = what, *this;
+}
+
+Setting& Setting::entries(std::size_t count) {
+  return info_.fewest = info_.most = count, *this;
+}
+
+Setting& Setting::not_empty() {
+  return info_.fewest = 1, *this;
+}
+
+Setting& Setting::or_sequence() {
+  return info_.type = Type::sequence, *this;
+}
+
+Setting& Setting::quick() {
+  return info_.quick = {QuickRule::Kind::same}, *this;
+}
+
+Setting& Setting::quick_at_most(std::int64_t bound) {
+  return info_.quick = {QuickRule::Kind::at_most, bound}, *this;
+}
+
+Setting& Setting::quick_fixed(std::int64_t value) {
+  return info_.quick = {QuickRule::Kind::fixed, value}, *this;
+}
+
+Setting& Setting::selects_cases() {
+  return info_.selects_cases = true, *this;
+}
+
 Setting& Setting::above(double bound) {
   info_.range.lowest = bound;
   info_.range.excludes_lowest = true;

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -79,49 +80,54 @@ std::string expectation(const SettingInfo& info);
 class Setting {
  public:
   template <class Value>
-  Setting(std::string name, Value& variable);
+  Setting(std::string_view name, Value& variable);
 
   /// One of the names, each for a value of the variable.
   template <class Value>
-  Setting(std::string name, Value& variable, std::vector<std::pair<std::string, Value>> names);
+  Setting(std::string_view name, Value& variable, std::vector<std::pair<std::string, Value>> names);
 
-  Setting& unit(std::string text) { return info_.unit = std::move(text), *this; }
-  Setting& doc(std::string text) { return info_.doc = std::move(text), *this; }
-  Setting& required() { return info_.is_required = true, *this; }
-  Setting& default_text(std::string text) { return info_.default_text = std::move(text), *this; }
-  Setting& positive() { return info_.range = NumberRule::positive, *this; }
-  Setting& nonnegative() { return info_.range = NumberRule::nonnegative, *this; }
+  // Not inline: every declaration has dozens of settings.
+  Setting(const Setting&);
+  Setting(Setting&&) noexcept;
+  Setting& operator=(const Setting&);
+  Setting& operator=(Setting&&) noexcept;
+  ~Setting();
+
+  Setting& unit(std::string_view text);
+  Setting& doc(std::string_view text);
+  Setting& required();
+  Setting& default_text(std::string_view text);
+  Setting& positive();
+  Setting& nonnegative();
   /// Numbers > `bound`.
   Setting& above(double bound);
   /// Numbers from `lowest` to `highest`, both included.
-  Setting& between(double lowest, double highest) { return info_.range = {lowest, highest}, *this; }
-  Setting& at_least_number(double lowest) { return info_.range.lowest = lowest, *this; }
+  Setting& between(double lowest, double highest);
+  Setting& at_least_number(double lowest);
   /// Numbers ≤ `bound`, beside what else they have to satisfy.
-  Setting& up_to(double bound) { return info_.range.highest = bound, *this; }
+  Setting& up_to(double bound);
   /// Integers from `lowest` to `highest`, both included.
   Setting& integers(std::int64_t lowest, std::int64_t highest);
-  Setting& at_least(std::int64_t lowest) { return info_.lowest = lowest, *this; }
+  Setting& at_least(std::int64_t lowest);
   /// An integer, or a word for this value of the variable: `"auto"` for 0.
   Setting& or_word(std::string word, std::int64_t value);
-  Setting& choices(std::vector<std::string> names) { return info_.choices = std::move(names), *this; }
-  Setting& names_of(std::string what) { return info_.names_of = std::move(what), *this; }
+  Setting& choices(std::vector<std::string> names);
+  Setting& names_of(std::string_view what);
   /// Entries of a list.
-  Setting& entries(std::size_t count) { return info_.fewest = info_.most = count, *this; }
-  Setting& not_empty() { return info_.fewest = 1, *this; }
+  Setting& entries(std::size_t count);
+  Setting& not_empty();
   /// A list of numbers that may also be { from, to, count }.
-  Setting& or_sequence() { return info_.type = Type::sequence, *this; }
+  Setting& or_sequence();
   /// One number for all of `count` things, or a list with one for each; so many numbers the variable gets.
   Setting& or_one_per(std::string what, std::size_t count);
   /// One number for all, or a table with numbers for some of these names. The variable has it under "".
   Setting& or_by_name(std::vector<std::string> names);
   /// Indices, pairs of them, or indices and names, into `count` things.
   Setting& into(std::string what, std::size_t count);
-  Setting& quick() { return info_.quick = {QuickRule::Kind::same}, *this; }
-  Setting& quick_at_most(std::int64_t bound) {
-    return info_.quick = {QuickRule::Kind::at_most, bound}, *this;
-  }
-  Setting& quick_fixed(std::int64_t value) { return info_.quick = {QuickRule::Kind::fixed, value}, *this; }
-  Setting& selects_cases() { return info_.selects_cases = true, *this; }
+  Setting& quick();
+  Setting& quick_at_most(std::int64_t bound);
+  Setting& quick_fixed(std::int64_t value);
+  Setting& selects_cases();
 
   const SettingInfo& info() const { return info_; }
   /// Nothing for a std::optional without a value.
@@ -148,15 +154,15 @@ class Setting {
 /// std::int64_t, std::string, Vec3<double>, int (indices); IndexPairs, PointList, NumberTable,
 /// NumbersOrStrings; or a std::optional of one of them.
 template <class Value>
-Setting setting(std::string name, Value& variable) {
-  return Setting(std::move(name), variable);
+Setting setting(std::string_view name, Value& variable) {
+  return Setting(name, variable);
 }
 
 /// A setting whose values have names: `choice("control", control, {{"fixed", Control::fixed}, …})`.
 template <class Value>
-Setting choice(std::string name, Value& variable,
+Setting choice(std::string_view name, Value& variable,
                std::initializer_list<std::pair<std::string, std::type_identity_t<Value>>> names) {
-  return Setting(std::move(name), variable, std::vector<std::pair<std::string, Value>>(names));
+  return Setting(name, variable, std::vector<std::pair<std::string, Value>>(names));
 }
 
 template <class Value>
@@ -190,9 +196,9 @@ struct Plain<std::optional<Value>> {
 }  // namespace detail
 
 template <class Variable>
-Setting::Setting(std::string name, Variable& variable) {
+Setting::Setting(std::string_view name, Variable& variable) {
   using Value = typename detail::Plain<Variable>::type;
-  info_.name = std::move(name);
+  info_.name = name;
   info_.type = type_of<Value>();
   get_ = [&variable]() -> std::optional<TomlValue> {
     const Value* held = nullptr;
@@ -234,8 +240,8 @@ Setting::Setting(std::string name, Variable& variable) {
 }
 
 template <class Value>
-Setting::Setting(std::string name, Value& variable, std::vector<std::pair<std::string, Value>> names) {
-  info_.name = std::move(name);
+Setting::Setting(std::string_view name, Value& variable, std::vector<std::pair<std::string, Value>> names) {
+  info_.name = name;
   info_.type = Type::string;
   for (const auto& [text, value] : names) info_.choices.push_back(text);
   get_ = [&variable, names]() -> std::optional<TomlValue> {
@@ -250,5 +256,22 @@ Setting::Setting(std::string name, Value& variable, std::vector<std::pair<std::s
     }
   };
 }
+
+// Compiled once, in setting.cpp.
+extern template Setting::Setting(std::string_view, double&);
+extern template Setting::Setting(std::string_view, int&);
+extern template Setting::Setting(std::string_view, std::int64_t&);
+extern template Setting::Setting(std::string_view, std::uint64_t&);
+extern template Setting::Setting(std::string_view, bool&);
+extern template Setting::Setting(std::string_view, std::string&);
+extern template Setting::Setting(std::string_view, Vec3<double>&);
+extern template Setting::Setting(std::string_view, std::vector<double>&);
+extern template Setting::Setting(std::string_view, std::vector<std::int64_t>&);
+extern template Setting::Setting(std::string_view, std::vector<std::string>&);
+extern template Setting::Setting(std::string_view, std::optional<double>&);
+extern template Setting::Setting(std::string_view, std::optional<std::int64_t>&);
+extern template Setting::Setting(std::string_view, std::optional<std::string>&);
+extern template Setting::Setting(std::string_view, std::optional<std::vector<double>>&);
+extern template Setting::Setting(std::string_view, std::optional<std::vector<std::string>>&);
 
 }  // namespace fw::settings

@@ -7,6 +7,7 @@
 
 #include "analysis/theory/method_theory.hpp"
 #include "ode/integrator.hpp"
+#include "ode/second_order_system.hpp"
 #include "problems/problem_entry.hpp"
 
 namespace fw::study {
@@ -30,6 +31,10 @@ class Catalog {
 
   /// The problem of that name. Throws InputError for an unknown name, parameter or value.
   virtual Problem problem(const std::string& name, const ProblemParameters& parameters) const = 0;
+
+  /// The positions of a static equilibrium of `system`, looked for from `position`. Throws InputError with the
+  /// reason where none is found.
+  virtual Vector equilibrium(const SecondOrderSystem& system, ConstVectorRef position) const;
 };
 
 }  // namespace fw::study

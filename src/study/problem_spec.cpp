@@ -18,6 +18,10 @@
 
 namespace fw::study {
 
+Vector Catalog::equilibrium(const SecondOrderSystem&, ConstVectorRef) const {
+  throw InputError("start = \"equilibrium\": this catalogue has no search for a static equilibrium");
+}
+
 namespace {
 
 std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpringSystem>& system) {
@@ -27,7 +31,8 @@ std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpri
 }
 
 /// The scene as a problem on [0, t_end].
-Problem problem_from_scene(scene::Scene scene, const std::string& name, double t_end) {
+Problem problem_from_scene(scene::Scene scene, const std::string& name, double t_end,
+                           const Catalog& catalog) {
   Problem problem;
   problem.name = name;
   problem.title = scene.title;
@@ -35,6 +40,9 @@ Problem problem_from_scene(scene::Scene scene, const std::string& name, double t
   problem.ivp.t1 = t_end;
   auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
   problem.is_smooth = !system->elements().has_kinks();
+  if (scene.starts_at_equilibrium) {
+    problem.ivp.y0.head(system->degrees_of_freedom()) = catalog.equilibrium(*system, scene.position);
+  }
   if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
   problem.ivp.system = std::move(system);
   return problem;
@@ -96,7 +104,7 @@ class ProblemMaker {
       scene::Scene scene = changed(assignments_of(spec_, variation));
       warnings_.insert(warnings_.end(), scene.warnings.begin(), scene.warnings.end());
       entry.scene_toml = scene.resolved_toml;
-      entry.problem = problem_from_scene(std::move(scene), stem, *spec_.t_end);
+      entry.problem = problem_from_scene(std::move(scene), stem, *spec_.t_end, catalog_);
     } catch (const InputError& error) {
       section_.fail("scene", error.what());
     }

@@ -8,7 +8,7 @@
 namespace fw::integrators {
 namespace {
 
-const schemes::ButcherTableau& find(const std::string& name) {
+const schemes::ButcherTableau& tableau_named(const std::string& name) {
   return named(schemes::fully_implicit_tableaus(), name);
 }
 
@@ -27,9 +27,9 @@ TEST(FullyImplicit, HasItsOrderWithAndWithoutDampers) {
 TEST(FullyImplicit, HasItsOrderInBinary128) {
   const Ivp ivp = coupled_oscillators(0.35);
   const std::vector<Float128> exact =
-      make_fully_implicit_runge_kutta(find("gauss3"))->extended_solver()(ivp, 2000);
+      make_fully_implicit_runge_kutta(tableau_named("gauss3"))->extended_solver()(ivp, 2000);
   for (const std::string name : {"gauss3", "lobatto_iiia4", "radau_iia3"}) {
-    const auto scheme = make_fully_implicit_runge_kutta(find(name));
+    const auto scheme = make_fully_implicit_runge_kutta(tableau_named(name));
     std::vector<double> steps, errors;
     for (const std::uint64_t count : {24u, 32u, 42u, 56u, 75u, 100u, 133u}) {
       const std::vector<Float128> end = scheme->extended_solver()(ivp, count);
@@ -71,7 +71,7 @@ TEST(FullyImplicit, AgreesWithTheFirstOrderSystemToRounding) {
 TEST(FullyImplicit, KeepsQuadraticInvariantsWhereTheCoefficientsSaySo) {
   Ivp ivp = linear_oscillators();
   const auto change = [&](const std::string& name) {
-    const Vector end = run(*make_fully_implicit_runge_kutta(find(name)), ivp, 0.2).state;
+    const Vector end = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, 0.2).state;
     return std::abs(linear_energy(end) - linear_energy(ivp.y0));
   };
   // 500 steps.
@@ -88,7 +88,7 @@ TEST(Gauss, KeepsTheAngularMomentumOfANonlinearNetwork) {
   const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system);
   const Index n = ivp.y0.size() / 2;
   const auto drift = [&](const std::string& name) {
-    const Vector y = run(*make_fully_implicit_runge_kutta(find(name)), ivp, 0.02).state;
+    const Vector y = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, 0.02).state;
     return norm(system.angular_momentum(y.head(n), y.tail(n)) -
                 system.angular_momentum(ivp.y0.head(n), ivp.y0.tail(n)));
   };
@@ -99,8 +99,8 @@ TEST(Gauss, KeepsTheAngularMomentumOfANonlinearNetwork) {
 
 TEST(FullyImplicit, KeepsItsMatrixWhileTheIterationConvergesWell) {
   const Ivp ivp = coupled_oscillators(0.35);
-  const auto kept = make_fully_implicit_runge_kutta(find("radau_iia3"));
-  const auto renewed = make_fully_implicit_runge_kutta(find("radau_iia3"), {.rate_of_renewal = 0.0});
+  const auto kept = make_fully_implicit_runge_kutta(tableau_named("radau_iia3"));
+  const auto renewed = make_fully_implicit_runge_kutta(tableau_named("radau_iia3"), {.rate_of_renewal = 0.0});
   const Solution a = run(*kept, ivp, 2.3 / 256), b = run(*renewed, ivp, 2.3 / 256);
   EXPECT_LE((a.state - b.state).norm(), 1e-13);
   EXPECT_LT(a.work.factorisations, 10u);
@@ -112,11 +112,11 @@ TEST(FullyImplicit, DampsStiffComponentsWhereItIsLStable) {
   Ivp ivp = prothero_robinson(-1e6);
   ivp.y0[0] = 2.0;
   for (const std::string name : {"radau_ia2", "radau_iia2", "radau_iia3", "lobatto_iiic2", "lobatto_iiic3"}) {
-    const Solution solution = run(*make_fully_implicit_runge_kutta(find(name)), ivp, 0.1);
+    const Solution solution = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, 0.1);
     EXPECT_NEAR(solution.state[0], prothero_robinson_end(), name == "radau_ia2" ? 1e-2 : 1e-6) << name;
   }
   for (const std::string name : {"gauss2", "gauss3", "lobatto_iiia3"}) {
-    const Solution solution = run(*make_fully_implicit_runge_kutta(find(name)), ivp, 0.1);
+    const Solution solution = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, 0.1);
     EXPECT_GT(std::abs(solution.state[0] - prothero_robinson_end()), 0.5) << name;
   }
 }
@@ -125,7 +125,7 @@ TEST(FullyImplicit, ReportsStagesWithoutASolutionAsAStatus) {
   // Cubic springs at 1e120: the force overflows.
   Ivp ivp = coupled_oscillators(0.0);
   ivp.y0 = Vector{{1e120, -1e120, 0.0, 0.0}};
-  const Solution solution = run(*make_fully_implicit_runge_kutta(find("gauss2")), ivp, 0.5);
+  const Solution solution = run(*make_fully_implicit_runge_kutta(tableau_named("gauss2")), ivp, 0.5);
   EXPECT_FALSE(solution.status.ok());
   EXPECT_EQ(solution.state, ivp.y0);
 }

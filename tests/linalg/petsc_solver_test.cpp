@@ -27,15 +27,15 @@ LinearSolverOptions petsc(const std::string& options, PetscMatrixType storage = 
 }
 
 /// A solve from scratch.
-struct Outcome {
+struct PetscOutcome {
   Status set_up;
   LinearSolve solve;
   Vector x;
   Work work;
 };
 
-Outcome solve_once(const LinearSolverOptions& options, const SparseMatrix& A, const Vector& b) {
-  Outcome outcome;
+PetscOutcome solve_once(const LinearSolverOptions& options, const SparseMatrix& A, const Vector& b) {
+  PetscOutcome outcome;
   const auto solver = make_linear_solver(options);
   outcome.x = Vector::Zero(b.size());
   outcome.set_up = solver->factorise(A, outcome.work);
@@ -57,9 +57,10 @@ class PetscCombinations : public testing::TestWithParam<std::tuple<PetscMatrixTy
 TEST_P(PetscCombinations, AgreeWithKluOnAStepOfACloth) {
   const auto& [storage, text] = GetParam();
   const ClothStep step = cloth_step(12, 2000.0, 0.02);
-  const Outcome expected = solve_once({.kind = LinearSolverKind::sparse_lu}, step.matrix, step.right_side);
+  const PetscOutcome expected =
+      solve_once({.kind = LinearSolverKind::sparse_lu}, step.matrix, step.right_side);
   ASSERT_TRUE(expected.solve.status.ok());
-  const Outcome outcome = solve_once(petsc(text, storage), step.matrix, step.right_side);
+  const PetscOutcome outcome = solve_once(petsc(text, storage), step.matrix, step.right_side);
   ASSERT_TRUE(outcome.set_up.ok()) << text << ": " << outcome.set_up.describe();
   EXPECT_TRUE(outcome.solve.status.ok()) << text << ": " << outcome.solve.status.describe();
   EXPECT_LT(outcome.solve.relative_residual, 1e-9);
@@ -138,7 +139,7 @@ TEST(PetscSolver, KeepsThePreconditionerWhenTheMatrixIsReplaced) {
     const LinearSolve kept = solver->solve(step.right_side, x, work);
     EXPECT_TRUE(kept.status.ok()) << kept.status.describe();
     EXPECT_LT((step.right_side - other * x).norm(), 1e-9 * step.right_side.norm());
-    const Outcome fresh = solve_once(petsc("", storage), other, step.right_side);
+    const PetscOutcome fresh = solve_once(petsc("", storage), other, step.right_side);
     EXPECT_GT(kept.iterations, fresh.solve.iterations);
     ASSERT_TRUE(solver->factorise(other, work).ok());
     x.setZero();
@@ -186,7 +187,7 @@ TEST(PetscSolver, StopsInTheNormOfTheResidualRelativeToTheRightSide) {
   for (const char* method : {"cg", "gmres", "bcgs", "fgmres", "tfqmr"}) {
     LinearSolverOptions options = petsc(std::string("-pc_type jacobi -ksp_type ") + method);
     options.relative_tolerance = 1e-6;
-    const Outcome outcome = solve_once(options, step.matrix, step.right_side);
+    const PetscOutcome outcome = solve_once(options, step.matrix, step.right_side);
     EXPECT_TRUE(outcome.solve.status.ok()) << method << ": " << outcome.solve.status.describe();
     EXPECT_LT(outcome.solve.relative_residual, 1.01e-6) << method;
     EXPECT_GT(outcome.solve.relative_residual, 1e-9) << method << " worked more than it was asked to";
@@ -195,10 +196,11 @@ TEST(PetscSolver, StopsInTheNormOfTheResidualRelativeToTheRightSide) {
 
 TEST(PetscSolver, TakesToleranceAndLimitFromTheOptionsFirst) {
   const ClothStep step = cloth_step(8, 2000.0, 0.02);
-  const Outcome loose = solve_once(petsc("-pc_type jacobi -ksp_rtol 1e-3"), step.matrix, step.right_side);
+  const PetscOutcome loose =
+      solve_once(petsc("-pc_type jacobi -ksp_rtol 1e-3"), step.matrix, step.right_side);
   EXPECT_TRUE(loose.solve.status.ok()) << loose.solve.status.describe();
   EXPECT_GT(loose.solve.relative_residual, 1e-6);
-  const Outcome few = solve_once(petsc("-pc_type jacobi -ksp_max_it 3"), step.matrix, step.right_side);
+  const PetscOutcome few = solve_once(petsc("-pc_type jacobi -ksp_max_it 3"), step.matrix, step.right_side);
   EXPECT_EQ(few.solve.status.code, StatusCode::linear_solver_failed);
   EXPECT_THAT(few.solve.status.message, HasSubstr("DIVERGED_ITS"));
   EXPECT_EQ(few.solve.iterations, 3u);
@@ -208,9 +210,9 @@ TEST(PetscSolver, NeedsFewerIterationsOfMultigridWithTheRigidBodyModes) {
   // Stiff and with a long step, so that A is close to −h²K.
   const ClothStep step = cloth_step(20, 2000.0, 1.0);
   LinearSolverOptions options = petsc("-pc_type gamg");
-  const Outcome without = solve_once(options, step.matrix, step.right_side);
+  const PetscOutcome without = solve_once(options, step.matrix, step.right_side);
   options.coordinates = step.coordinates;
-  const Outcome with = solve_once(options, step.matrix, step.right_side);
+  const PetscOutcome with = solve_once(options, step.matrix, step.right_side);
   ASSERT_TRUE(without.solve.status.ok()) << without.solve.status.describe();
   ASSERT_TRUE(with.solve.status.ok()) << with.solve.status.describe();
   EXPECT_GT(with.solve.iterations, 5u);
@@ -225,7 +227,7 @@ TEST(PetscSolver, FailsWithPetscsReasonWhereASolverDoesNotSupportTheStorage) {
                                       {"-ksp_type preonly -pc_type lu", PetscMatrixType::sbaij},
                                       {"-pc_type gamg", PetscMatrixType::baij},
                                       {"-pc_type gamg", PetscMatrixType::sbaij}}) {
-    const Outcome outcome = solve_once(petsc(text, storage), step.matrix, step.right_side);
+    const PetscOutcome outcome = solve_once(petsc(text, storage), step.matrix, step.right_side);
     const Status& status = outcome.set_up.ok() ? outcome.solve.status : outcome.set_up;
     EXPECT_EQ(status.code, StatusCode::library_failure) << text << ": " << status.describe();
     EXPECT_THAT(status.message, HasSubstr("PETSc")) << text;
@@ -235,7 +237,8 @@ TEST(PetscSolver, FailsWithPetscsReasonWhereASolverDoesNotSupportTheStorage) {
 TEST(PetscSolver, DoesNotBelieveASolverThatStopsTooSoon) {
   const ClothStep step = cloth_step(8, 2000.0, 0.02);
   // One sweep of the preconditioner is taken for the solution, with a positive reason.
-  const Outcome outcome = solve_once(petsc("-ksp_type preonly -pc_type icc"), step.matrix, step.right_side);
+  const PetscOutcome outcome =
+      solve_once(petsc("-ksp_type preonly -pc_type icc"), step.matrix, step.right_side);
   EXPECT_EQ(outcome.solve.status.code, StatusCode::linear_solver_failed) << outcome.solve.status.describe();
   EXPECT_THAT(outcome.solve.status.message, HasSubstr("true relative residual"));
   EXPECT_GT(outcome.solve.relative_residual, 1e-6);
@@ -278,7 +281,7 @@ TEST(PetscSolver, ReportsASingularMatrix) {
        {"-ksp_type preonly -pc_type lu", "-ksp_type preonly -pc_type lu -pc_factor_mat_solver_type klu",
         "-ksp_type preonly -pc_type cholesky",
         "-ksp_type preonly -pc_type lu -pc_factor_mat_solver_type mumps"}) {
-    const Outcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
+    const PetscOutcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
     const Status& status = outcome.set_up.ok() ? outcome.solve.status : outcome.set_up;
     EXPECT_EQ(status.code, StatusCode::matrix_singular) << text << ": " << status.describe();
   }
@@ -291,7 +294,7 @@ TEST(PetscSolver, ReportsAnIndefiniteMatrix) {
   ASSERT_LT(Eigen::SelfAdjointEigenSolver<Matrix>(Matrix(step.matrix)).eigenvalues().minCoeff(), -0.1);
   ASSERT_GT(Eigen::SelfAdjointEigenSolver<Matrix>(Matrix(step.matrix)).eigenvalues().maxCoeff(), 0.1);
   for (const char* text : {"-pc_type none", "-pc_type jacobi"}) {
-    const Outcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
+    const PetscOutcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
     EXPECT_EQ(outcome.solve.status.code, StatusCode::matrix_indefinite) << outcome.solve.status.describe();
     EXPECT_THAT(outcome.solve.status.message, HasSubstr("KSP_DIVERGED_INDEFINITE"));
   }
@@ -332,7 +335,7 @@ TEST(PetscSolver, SolvesUnsymmetricMatricesOfEverySize) {
     A.makeCompressed();
     for (const PetscMatrixType storage : {PetscMatrixType::aij, PetscMatrixType::baij}) {
       for (const char* text : {"-ksp_type gmres -pc_type ilu", "-ksp_type preonly -pc_type lu"}) {
-        const Outcome outcome = solve_once(petsc(text, storage), A, b);
+        const PetscOutcome outcome = solve_once(petsc(text, storage), A, b);
         ASSERT_TRUE(outcome.set_up.ok()) << outcome.set_up.describe();
         EXPECT_TRUE(outcome.solve.status.ok()) << outcome.solve.status.describe();
         EXPECT_LT((outcome.x - dense.lu().solve(b)).norm(), 1e-8 * outcome.x.norm());
@@ -345,7 +348,7 @@ TEST(PetscSolver, DoesNotBelieveATriangleOfAnUnsymmetricMatrix) {
   SparseMatrix A = cloth_step(4, 2000.0, 0.02).matrix;
   A.coeffRef(18, 15) *= 1.5;
   const Vector b = Vector::LinSpaced(A.cols(), -1.0, 2.0);
-  const Outcome outcome = solve_once(petsc("", PetscMatrixType::sbaij), A, b);
+  const PetscOutcome outcome = solve_once(petsc("", PetscMatrixType::sbaij), A, b);
   EXPECT_EQ(outcome.solve.status.code, StatusCode::linear_solver_failed) << outcome.solve.status.describe();
   EXPECT_THAT(outcome.solve.status.message, HasSubstr("true relative residual"));
 }
@@ -379,7 +382,7 @@ TEST(PetscSolver, WorksInSeveralThreadsAndManyTimes) {
       const char* text = k % 2 == 0 ? "" : "-pc_type gamg";
       double largest = 0.0;
       for (int cycle = 0; cycle < 50; ++cycle) {
-        const Outcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
+        const PetscOutcome outcome = solve_once(petsc(text), step.matrix, step.right_side);
         largest = std::max(largest, (outcome.x - expected).norm());
         EXPECT_THROW(solve_once(petsc("-pc_type nonsense"), step.matrix, step.right_side), InputError);
       }

@@ -13,7 +13,7 @@
 namespace fw::scene {
 namespace {
 
-Scene cloth(int n) {
+Scene cloth_of(int n) {
   return parse_scene(
       fmt::format("[generate]\nkind = 'cloth'\ncounts = [{}, {}]\nspacing = 0.1\ntotal_mass = 1\n"
                   "stiffness = {{ structural = 3.0, shear = 2.0, bend = 1.0 }}\n",
@@ -38,20 +38,20 @@ std::set<Edge> edges_of(const mechanics::Springs& springs) {
 TEST(Cloth, HasTheSpringsOfTheFormulas) {
   for (const int n : {2, 3, 10, 100}) {
     SCOPED_TRACE(n);
-    const auto& springs = cloth(n).model.springs;
+    const auto& springs = cloth_of(n).model.springs;
     const auto m = static_cast<std::size_t>(n);
     EXPECT_EQ(count_with_stiffness(springs, 3.0), 2 * m * (m - 1));
     EXPECT_EQ(count_with_stiffness(springs, 2.0), 2 * (m - 1) * (m - 1));
     EXPECT_EQ(count_with_stiffness(springs, 1.0), 2 * m * (m - 2));
     EXPECT_EQ(edges_of(springs).size(), springs.size()) << "every spring once";
   }
-  EXPECT_EQ(cloth(100).model.springs.size(), 59002u);
-  EXPECT_EQ(cloth(500).model.springs.size(), 1495002u);
+  EXPECT_EQ(cloth_of(100).model.springs.size(), 59002u);
+  EXPECT_EQ(cloth_of(500).model.springs.size(), 1495002u);
 }
 
 TEST(Cloth, WithAMillionParticlesIsBuiltInSeconds) {
   const auto start = std::chrono::steady_clock::now();
-  const Scene scene = cloth(1000);
+  const Scene scene = cloth_of(1000);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(scene.model.mass.size(), 1000000u);
   EXPECT_EQ(scene.model.springs.size(), 5990002u);

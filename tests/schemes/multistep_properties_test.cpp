@@ -10,7 +10,7 @@
 namespace fw::schemes {
 namespace {
 
-const MultistepFormula& find(const std::string& name) {
+const MultistepFormula& formula_named(const std::string& name) {
   const auto& list = multistep_formulas();
   const auto found =
       std::find_if(list.begin(), list.end(), [&](const auto& formula) { return formula.name == name; });
@@ -50,22 +50,22 @@ TEST(MultistepFormulas, HaveTheOrderThatTheirNamesSay) {
 
 TEST(MultistepFormulas, HaveTheErrorConstantsOfTheLiterature) {
   // [Hairer, Nørsett, Wanner 1993, III.2, tables 2.1 and 2.2, and −1/(k+1) for BDF].
-  EXPECT_EQ(error_constant(find("adams_bashforth2")), Rational(5, 12));
-  EXPECT_EQ(error_constant(find("adams_bashforth3")), Rational(3, 8));
-  EXPECT_EQ(error_constant(find("adams_bashforth4")), Rational(251, 720));
-  EXPECT_EQ(error_constant(find("adams_bashforth5")), Rational(95, 288));
-  EXPECT_EQ(error_constant(find("adams_moulton2")), Rational(-1, 12));
-  EXPECT_EQ(error_constant(find("adams_moulton3")), Rational(-1, 24));
-  EXPECT_EQ(error_constant(find("adams_moulton4")), Rational(-19, 720));
-  EXPECT_EQ(error_constant(find("adams_moulton5")), Rational(-3, 160));
+  EXPECT_EQ(error_constant(formula_named("adams_bashforth2")), Rational(5, 12));
+  EXPECT_EQ(error_constant(formula_named("adams_bashforth3")), Rational(3, 8));
+  EXPECT_EQ(error_constant(formula_named("adams_bashforth4")), Rational(251, 720));
+  EXPECT_EQ(error_constant(formula_named("adams_bashforth5")), Rational(95, 288));
+  EXPECT_EQ(error_constant(formula_named("adams_moulton2")), Rational(-1, 12));
+  EXPECT_EQ(error_constant(formula_named("adams_moulton3")), Rational(-1, 24));
+  EXPECT_EQ(error_constant(formula_named("adams_moulton4")), Rational(-19, 720));
+  EXPECT_EQ(error_constant(formula_named("adams_moulton5")), Rational(-3, 160));
   for (int k = 2; k <= 6; ++k)
-    EXPECT_EQ(error_constant(find("bdf" + std::to_string(k))), Rational(-1, k + 1));
+    EXPECT_EQ(error_constant(formula_named("bdf" + std::to_string(k))), Rational(-1, k + 1));
 }
 
 TEST(MultistepFormulas, OfBackwardDifferentiationFollowFromBackwardDifferences) {
   for (int k = 2; k <= 6; ++k) {
     const MultistepFormula generated = backward_differentiation(k);
-    const MultistepFormula& typed = find("bdf" + std::to_string(k));
+    const MultistepFormula& typed = formula_named("bdf" + std::to_string(k));
     for (std::size_t j = 0; j < typed.alpha.size(); ++j) {
       EXPECT_EQ(as<Rational>(typed.alpha[j]), as<Rational>(generated.alpha[j])) << k << " " << j;
       EXPECT_EQ(as<Rational>(typed.beta[j]), as<Rational>(generated.beta[j])) << k << " " << j;
@@ -74,10 +74,10 @@ TEST(MultistepFormulas, OfBackwardDifferentiationFollowFromBackwardDifferences) 
 }
 
 TEST(OrderOfAccuracy, FallsWhereACoefficientIsWrong) {
-  MultistepFormula wrong = find("bdf2");
+  MultistepFormula wrong = formula_named("bdf2");
   wrong.alpha[1] = "-3/2";  // in place of −4/3
   EXPECT_LT(order_of_accuracy(wrong), 1);
-  wrong = find("adams_bashforth4");
+  wrong = formula_named("adams_bashforth4");
   std::swap(wrong.beta[0], wrong.beta[1]);
   EXPECT_EQ(order_of_accuracy(wrong), 1);
 }
@@ -95,24 +95,24 @@ TEST(ZeroStability, FailsForADoubleRootOnTheCircle) {
 
 TEST(StabilityAngle, IsThatOfTheLiterature) {
   // [Hairer, Wanner 1996, V.2, table 2.1].
-  EXPECT_EQ(stability_angle(find("bdf2")), 90.0);
-  EXPECT_NEAR(stability_angle(find("bdf3")), 86.03, 0.005);
-  EXPECT_NEAR(stability_angle(find("bdf4")), 73.35, 0.005);
-  EXPECT_NEAR(stability_angle(find("bdf5")), 51.84, 0.005);
-  EXPECT_NEAR(stability_angle(find("bdf6")), 17.84, 0.005);
-  EXPECT_EQ(stability_angle(find("adams_moulton2")), 90.0);
-  EXPECT_EQ(stability_angle(find("adams_moulton3")), 0.0);
-  EXPECT_EQ(stability_angle(find("adams_bashforth2")), 0.0);
+  EXPECT_EQ(stability_angle(formula_named("bdf2")), 90.0);
+  EXPECT_NEAR(stability_angle(formula_named("bdf3")), 86.03, 0.005);
+  EXPECT_NEAR(stability_angle(formula_named("bdf4")), 73.35, 0.005);
+  EXPECT_NEAR(stability_angle(formula_named("bdf5")), 51.84, 0.005);
+  EXPECT_NEAR(stability_angle(formula_named("bdf6")), 17.84, 0.005);
+  EXPECT_EQ(stability_angle(formula_named("adams_moulton2")), 90.0);
+  EXPECT_EQ(stability_angle(formula_named("adams_moulton3")), 0.0);
+  EXPECT_EQ(stability_angle(formula_named("adams_bashforth2")), 0.0);
 }
 
 TEST(StabilityAngle, SeparatesStableFromUnstableSteps) {
   for (const char* name : {"bdf3", "bdf4", "bdf5", "bdf6"}) {
-    const double alpha = stability_angle(find(name));
+    const double alpha = stability_angle(formula_named(name));
     double largest_inside = 0.0, largest_outside = 0.0;
     for (double radius = 1e-3; radius < 1e4; radius *= 1.02) {
       const auto growth = [&](double degrees) {
         const double radians = degrees * 3.14159265358979324 / 180.0;
-        return amplification(find(name), -radius * std::cos(radians), radius * std::sin(radians));
+        return amplification(formula_named(name), -radius * std::cos(radians), radius * std::sin(radians));
       };
       largest_inside = std::max(largest_inside, growth(alpha - 0.2));
       largest_outside = std::max(largest_outside, growth(alpha + 0.2));
@@ -131,10 +131,10 @@ TEST(Stability, OfAandLIsThatOfTheLiterature) {
 }
 
 TEST(Amplification, LeavesTheRealAxisOfAdamsBashforthAtItsLimit) {
-  EXPECT_LE(amplification(find("adams_bashforth2"), -0.999, 0.0), 1.0);
-  EXPECT_GT(amplification(find("adams_bashforth2"), -1.001, 0.0), 1.0);
-  EXPECT_LE(amplification(find("adams_bashforth3"), -6.0 / 11.0 + 1e-3, 0.0), 1.0);
-  EXPECT_GT(amplification(find("adams_bashforth3"), -6.0 / 11.0 - 1e-3, 0.0), 1.0);
+  EXPECT_LE(amplification(formula_named("adams_bashforth2"), -0.999, 0.0), 1.0);
+  EXPECT_GT(amplification(formula_named("adams_bashforth2"), -1.001, 0.0), 1.0);
+  EXPECT_LE(amplification(formula_named("adams_bashforth3"), -6.0 / 11.0 + 1e-3, 0.0), 1.0);
+  EXPECT_GT(amplification(formula_named("adams_bashforth3"), -6.0 / 11.0 - 1e-3, 0.0), 1.0);
 }
 
 }  // namespace

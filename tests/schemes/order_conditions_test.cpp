@@ -29,7 +29,7 @@ const auto& find_in(const List& list, const std::string& name) {
   return *found;
 }
 
-const ButcherTableau& find(const std::string& name) {
+const ButcherTableau& tableau_named(const std::string& name) {
   for (const auto* list :
        {&explicit_tableaus(), &diagonally_implicit_tableaus(), &fully_implicit_tableaus()}) {
     if (std::any_of(list->begin(), list->end(), [&](const ButcherTableau& t) { return t.name == name; })) {
@@ -40,7 +40,7 @@ const ButcherTableau& find(const std::string& name) {
 }
 
 LinearStability stability_of(const std::string& name) {
-  return linear_stability(stability_function(find(name)));
+  return linear_stability(stability_function(tableau_named(name)));
 }
 
 std::vector<int> counts_by_order(const auto& trees, int orders) {
@@ -99,7 +99,7 @@ TEST(OrderOfAccuracy, InBinary128IsThatOfExactArithmeticForEveryRationalTableau)
 TEST(OrderOfAccuracy, InExactArithmeticFallsByTheSmallestMistake) {
   // 1e-15 moved from b₂ to b₃ keeps all Σ b c^k, for c₂ = c₃, but not b·Ac = 1/6; then the sum of weights is
   // wrong.
-  TableauValues<Rational> exact = values<Rational>(find("rk4"));
+  TableauValues<Rational> exact = values<Rational>(tableau_named("rk4"));
   const Rational mistake(1, 1'000'000'000'000'000);
   exact.b[1] -= mistake;
   exact.b[2] += mistake;
@@ -110,7 +110,9 @@ TEST(OrderOfAccuracy, InExactArithmeticFallsByTheSmallestMistake) {
 
 TEST(QuadratureOrder, IsThatOfTheQuadratureFormula) {
   // Simpson's rule 4, Gauss with s nodes 2s, Radau 2s − 1, Lobatto 2s − 2.
-  const auto order = [](const char* name) { return quadrature_order(values<Float128>(find(name)), 1e-25); };
+  const auto order = [](const char* name) {
+    return quadrature_order(values<Float128>(tableau_named(name)), 1e-25);
+  };
   EXPECT_EQ(order("rk4"), 4);
   EXPECT_EQ(order("gauss2"), 4);
   EXPECT_EQ(order("gauss3"), 6);
@@ -123,17 +125,17 @@ TEST(QuadratureOrder, IsThatOfTheQuadratureFormula) {
 
 TEST(PrincipalError, IsThatOfTheLiterature) {
   // By hand for schemes of two stages; Dormand–Prince 5(4): 3.99e-4 [Dormand, Prince 1980].
-  EXPECT_NEAR(principal_error(find("explicit_euler")), 0.5, 1e-15);
+  EXPECT_NEAR(principal_error(tableau_named("explicit_euler")), 0.5, 1e-15);
   // Midpoint: b·c² − 1/3 = −1/12 with σ = 2, b·Ac − 1/6 = −1/6.
-  EXPECT_NEAR(principal_error(find("midpoint")), std::hypot(1.0 / 24.0, 1.0 / 6.0), 1e-15);
-  EXPECT_NEAR(principal_error(find("heun")), std::hypot(1.0 / 12.0, 1.0 / 6.0), 1e-15);
-  EXPECT_NEAR(principal_error(find("dormand_prince_54")), 3.99e-4, 0.005e-4);
+  EXPECT_NEAR(principal_error(tableau_named("midpoint")), std::hypot(1.0 / 24.0, 1.0 / 6.0), 1e-15);
+  EXPECT_NEAR(principal_error(tableau_named("heun")), std::hypot(1.0 / 12.0, 1.0 / 6.0), 1e-15);
+  EXPECT_NEAR(principal_error(tableau_named("dormand_prince_54")), 3.99e-4, 0.005e-4);
 }
 
 TEST(StabilityFunction, OfKnownSchemesIsThatOfTheLiterature) {
   const auto expect = [](const char* name, const std::vector<double>& numerator,
                          const std::vector<double>& denominator) {
-    const StabilityFunction R = stability_function(find(name));
+    const StabilityFunction R = stability_function(tableau_named(name));
     ASSERT_EQ(R.numerator.size(), numerator.size()) << name;
     ASSERT_EQ(R.denominator.size(), denominator.size()) << name;
     for (std::size_t k = 0; k < numerator.size(); ++k) {
@@ -218,10 +220,10 @@ TEST(AlgebraicStability, HoldsForGaussAndRadauAndNotForLobattoIIIA) {
   // [Hairer, Wanner 1996, IV.12].
   for (const char* name : {"implicit_euler", "implicit_midpoint", "gauss2", "gauss3", "radau_iia2",
                            "radau_iia3", "lobatto_iiic2", "lobatto_iiic3"}) {
-    EXPECT_TRUE(is_algebraically_stable(find(name))) << name;
+    EXPECT_TRUE(is_algebraically_stable(tableau_named(name))) << name;
   }
   for (const char* name : {"trapezoidal", "lobatto_iiia3", "lobatto_iiib3", "rk4"}) {
-    EXPECT_FALSE(is_algebraically_stable(find(name))) << name;
+    EXPECT_FALSE(is_algebraically_stable(tableau_named(name))) << name;
   }
 }
 

@@ -24,6 +24,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "adding_an_integrator.md"
 MARK = re.compile(r"^\*\*`([^`]+)`\*\*( \(change\))?$")
+INCLUDED = re.compile(r'^#include "([^"]+)"$', re.MULTILINE)
 EXIT_CODE = re.compile(r"#\s*exit code (\d+)\s*$")
 
 
@@ -99,6 +100,9 @@ class Build:
         self.directory, self.tree = directory, tree
         entries = json.loads((directory / "compile_commands.json").read_text())
         self.commands = {entry["file"]: shlex.split(entry["command"]) for entry in entries}
+        # Source -> the file of several sources with which it is compiled.
+        self.together = {source: file for file in self.commands if "/Unity/" in file
+                         for source in INCLUDED.findall(pathlib.Path(file).read_text())}
         answer = run(["ninja", "-t", "commands", "bin/federwerk"], directory)
         link = [line for line in answer.stdout.split("\n") if " -o bin/federwerk " in line]
         if answer.returncode != 0 or len(link) != 1:
@@ -106,15 +110,28 @@ class Build:
         # ": && c++ ... -o bin/federwerk ... && :"
         self.link = shlex.split(re.sub(r"^: && | && :$", "", link[0]))
 
-    def object_of(self, path):
-        return self.tree / "objects" / (path.replace("/", "_") + ".o")
+    def source_of(self, path):
+        """What is compiled for a file of the tree: itself, or it and those that are compiled with it."""
+        group = self.together.get(str(ROOT / path))
+        if group is None:
+            return self.tree / path
+        text = pathlib.Path(group).read_text()
+        for source in INCLUDED.findall(text):
+            own = self.tree / pathlib.Path(source).relative_to(ROOT)
+            if own.exists():
+                text = text.replace(f'"{source}"', f'"{own}"')
+        target = self.tree / "objects" / pathlib.Path(group).relative_to(self.directory).as_posix().replace("/", "_")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text)
+        return target
 
     def compile(self, path):
         """A new file is compiled like any other of its folder."""
         own = str(ROOT / path)
-        folder = str((ROOT / path).parent)
-        like = own if own in self.commands else next(
-            (file for file in self.commands if str(pathlib.Path(file).parent) == folder), None)
+        folder = (ROOT / path).parent
+        like = self.together.get(own) or (own if own in self.commands else next(
+            (self.together.get(file, file) for file in [*self.commands, *self.together]
+             if pathlib.Path(file).parent == folder), None))
         if like is None:
             raise Failure(f"nothing in {folder} shows how {path} is compiled")
         # Headers of the tree go before those of the rooms.
@@ -126,9 +143,10 @@ class Build:
                 next(words)
             else:
                 result.append(word)
-        target = self.object_of(path)
+        source = self.source_of(path)
+        target = self.tree / "objects" / (source.relative_to(self.tree).as_posix().replace("/", "_") + ".o")
         target.parent.mkdir(parents=True, exist_ok=True)
-        answer = run(result + ["-Werror", "-o", str(target), "-c", str(self.tree / path)], self.directory)
+        answer = run(result + ["-Werror", "-o", str(target), "-c", str(source)], self.directory)
         if answer.returncode != 0:
             raise Failure(f"{path} does not compile:\n{answer.stdout[-6000:]}")
         return target
@@ -170,7 +188,8 @@ def examine(build_directory):
     shutil.rmtree(tree, ignore_errors=True)
     files, commands = apply_page(PAGE.read_text(), tree)
     build = Build(build_directory, tree)
-    sources = [path for path in files if path.endswith(".cpp")]
+    groups = {build.together.get(str(ROOT / path), path): path for path in files if path.endswith(".cpp")}
+    sources = list(groups.values())  # one of each group
     with concurrent.futures.ThreadPoolExecutor(max_workers=min(2, os.cpu_count() or 1)) as pool:
         objects = list(pool.map(build.compile, sources))
     executable = tree / "build" / "release" / "bin" / "federwerk"

@@ -27,7 +27,7 @@ from trajectory_checks import Trajectory, largest_error, require_agreement, requ
 
 LAWS = ("hooke", "strain", "tension_only")
 CVODE = ("--method", "sundials:cvode_bdf", "--rtol", "1e-10", "--atol", "1e-12")
-settings = argparse.Namespace(federwerk=os.environ.get("FEDERWERK_EXECUTABLE"), count=16, seed=20261122)
+settings = argparse.Namespace(federwerk=os.environ.get("FEDERWERK_EXECUTABLE"), count=8, seed=20261122)
 
 
 def simulate(text, folder, *options):

@@ -1,4 +1,5 @@
 #include "analysis/fit/binned_series.hpp"
+#include "core/special_values.hpp"
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_fit.h>
@@ -10,9 +11,7 @@
 
 namespace fw::analysis {
 
-namespace {
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-}
+namespace {}
 
 BinnedSeries::BinnedSeries(std::uint64_t total, std::uint64_t bins) : total_(total) {
   if (total == 0 || bins == 0) throw std::logic_error("BinnedSeries: expected values and bins");
@@ -20,8 +19,8 @@ BinnedSeries::BinnedSeries(std::uint64_t total, std::uint64_t bins) : total_(tot
   counts_.assign(count, 0);
   time_sums_.assign(count, 0.0);
   sums_.assign(count, 0.0);
-  least_.assign(count, none);
-  largest_.assign(count, none);
+  least_.assign(count, no_value);
+  largest_.assign(count, no_value);
 }
 
 void BinnedSeries::add(double time, double value) {
@@ -49,7 +48,7 @@ void BinnedSeries::add(double time, double value) {
 std::vector<double> BinnedSeries::times() const {
   std::vector<double> means;
   for (std::size_t k = 0; k < counts_.size(); ++k) {
-    means.push_back(counts_[k] == 0 ? none : time_sums_[k] / static_cast<double>(counts_[k]));
+    means.push_back(counts_[k] == 0 ? no_value : time_sums_[k] / static_cast<double>(counts_[k]));
   }
   return means;
 }
@@ -57,7 +56,7 @@ std::vector<double> BinnedSeries::times() const {
 std::vector<double> BinnedSeries::means() const {
   std::vector<double> means;
   for (std::size_t k = 0; k < counts_.size(); ++k) {
-    means.push_back(counts_[k] == 0 ? none : sums_[k] / static_cast<double>(counts_[k]));
+    means.push_back(counts_[k] == 0 ? no_value : sums_[k] / static_cast<double>(counts_[k]));
   }
   return means;
 }
@@ -87,7 +86,7 @@ Drift fit_drift(const BinnedSeries& series, std::uint64_t batches) {
   const std::uint64_t used = std::min(batches, bins);
   std::vector<double> times, means, halves;
   for (std::uint64_t b = 0; b < used; ++b) {
-    double time = 0.0, mean = 0.0, least = none, largest = none;
+    double time = 0.0, mean = 0.0, least = no_value, largest = no_value;
     std::uint64_t members = 0;
     for (std::uint64_t k = b * bins / used; k < (b + 1) * bins / used; ++k) {
       if (!std::isfinite(bin_means[k])) continue;

@@ -7,13 +7,12 @@
 #include <numbers>
 #include <vector>
 
+#include "core/special_values.hpp"
 #include "ode/functor_system.hpp"
 
 namespace fw::analysis {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// f = −k q.
 struct Spring {
@@ -149,7 +148,7 @@ double measure_radius_at_infinity(const Integrator& integrator, double mass, dou
   const Solution solution = integrator.solve(oscillator(mass, stiffness, most_steps * h),
                                              FixedStep{.step = h}, history, {.stop = run.stop});
   const bool ran = solution.status.ok() || solution.status.code == StatusCode::stopped_by_observer;
-  if (!ran || history.size() < 3) return ran && history.size() > 0 ? 0.0 : none;
+  if (!ran || history.size() < 3) return ran && history.size() > 0 ? 0.0 : no_value;
   const std::size_t n = (history.size() - 1) / 2;
   return std::pow(history.norm(2 * n) / history.norm(n), 1.0 / static_cast<double>(n));
 }

@@ -11,8 +11,6 @@ namespace {
 
 using State = std::vector<Float128>;
 
-const Float128 epsilon = std::numeric_limits<Float128>::epsilon();
-
 /// The increment over one basic step H, computed row by row.
 class Tableau {
  public:
@@ -95,7 +93,7 @@ double error_in_tolerances(const State& y, const State& scale, const State& best
   Float128 largest = 0;
   for (std::size_t i = 0; i < size; ++i)
     largest = std::max(largest, std::max(scale[i], Float128(abs(y[i] + best[i]))));
-  const Float128 resolution = 64 * epsilon * largest + Float128(std::numeric_limits<double>::min());
+  const Float128 resolution = 64 * float128_epsilon * largest + Float128(std::numeric_limits<double>::min());
   Float128 error = 0;
   for (std::size_t i = 0; i < size; ++i) {
     const Float128 component_scale = std::max(scale[i], Float128(abs(y[i] + best[i])));
@@ -205,7 +203,7 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
   Float128 t = ivp.t0;
   const double end = times.empty() ? ivp.t0 : times.back();
   const Float128 interval = Float128(end) - ivp.t0;
-  const Float128 smallest_step = 32 * epsilon * std::max(std::abs(ivp.t0), std::abs(end));
+  const Float128 smallest_step = 32 * float128_epsilon * std::max(std::abs(ivp.t0), std::abs(end));
   Float128 proposal = 0;
   bool slope_is_current = false;
   int rejections_in_a_row = 0;

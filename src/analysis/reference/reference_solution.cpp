@@ -12,8 +12,6 @@
 namespace fw::analysis {
 namespace {
 
-const Float128 epsilon = std::numeric_limits<Float128>::epsilon();
-
 void check_input(const Ivp& ivp, std::span<const double> times, const ReferenceOptions& options) {
   if (!ivp.system) throw InputError("reference: initial value problem without a system");
   const std::size_t size = initial_state_extended(ivp).size();
@@ -98,7 +96,7 @@ ReferenceSolution certified_reference(const Ivp& ivp, std::span<const double> ti
     for (std::size_t i = 0; i < state.value.size(); ++i) {
       // Two runs may agree to the last bit; neither is then better than the rounding of its own result.
       state.error.push_back(std::max(Float128(abs(fine.states[n][i] - coarse.states[n][i])),
-                                     Float128(epsilon * abs(state.value[i]))));
+                                     Float128(float128_epsilon * abs(state.value[i]))));
     }
     reference.states.push_back(std::move(state));
   }
@@ -131,7 +129,7 @@ ReferenceSolution reference(const Problem& problem, std::span<const double> time
       state_norm = std::max(state_norm, Float128(abs(state.value[i])));
       slope_norm = std::max(slope_norm, Float128(abs(slope[i])));
     }
-    state.error.assign(slope.size(), 64 * epsilon * (state_norm + std::abs(time) * slope_norm));
+    state.error.assign(slope.size(), 64 * float128_epsilon * (state_norm + std::abs(time) * slope_norm));
     solution.states.push_back(std::move(state));
   }
   return solution;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/special_values.hpp"
 #include "dense/eigenvalues.hpp"
 #include "dense/factorisations.hpp"
 
@@ -14,9 +15,8 @@ namespace fw::analysis {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// By which a matrix or polynomial may miss the unit circle and still counts as touching it.
-constexpr double rounding = 1e-12;
+constexpr double touching = 1e-12;
 
 /// x_{n+1} = P x_n + Q x_{n−1} on (x_n, x_{n−1}).
 Matrix companion(const Matrix& P, const Matrix& Q) {
@@ -47,7 +47,7 @@ double spectral_radius(const Eigen::Matrix2d& m) {
   const double discriminant = 0.25 * trace * trace - determinant;
   const double radius =
       discriminant <= 0.0 ? std::sqrt(determinant) : std::abs(0.5 * trace) + std::sqrt(discriminant);
-  const bool is_stable = std::abs(trace) <= 1.0 + determinant + rounding && determinant <= 1.0 + rounding;
+  const bool is_stable = std::abs(trace) <= 1.0 + determinant + touching && determinant <= 1.0 + touching;
   return is_stable ? std::min(radius, 1.0) : radius;
 }
 
@@ -90,9 +90,9 @@ double alpha_growth(const integrators::AlphaParameters& p, double a, double b) {
   companion_of << -c[2], -c[1], -c[0], 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
   const double radius =
       Eigen::EigenSolver<Eigen::Matrix3d>(companion_of, false).eigenvalues().cwiseAbs().maxCoeff();
-  const bool is_stable = 1.0 + c[2] + c[1] + c[0] >= -rounding && 1.0 - c[2] + c[1] - c[0] >= -rounding &&
-                         std::abs(c[0]) <= 1.0 + rounding &&
-                         1.0 - c[0] * c[0] >= std::abs(c[1] - c[0] * c[2]) - rounding;
+  const bool is_stable = 1.0 + c[2] + c[1] + c[0] >= -touching && 1.0 - c[2] + c[1] - c[0] >= -touching &&
+                         std::abs(c[0]) <= 1.0 + touching &&
+                         1.0 - c[0] * c[0] >= std::abs(c[1] - c[0] * c[2]) - touching;
   return is_stable ? std::min(radius, 1.0) : radius;
 }
 

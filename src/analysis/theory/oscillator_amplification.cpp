@@ -6,14 +6,13 @@
 #include <limits>
 #include <memory>
 
+#include "core/special_values.hpp"
 #include "schemes/linear_form.hpp"
 #include "schemes/multistep_properties.hpp"
 
 namespace fw::analysis {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A factor counts as complex where its imaginary part is clear of the rounding of a double root.
 constexpr double smallest_angle = 1e-6;
@@ -165,11 +164,11 @@ AmplificationFactors amplification_factors(const LinearScheme& scheme) {
 }
 
 double NumericalOscillation::damping_ratio() const {
-  return oscillates ? 0.0 - std::log(std::abs(factor)) / phase : none;
+  return oscillates ? 0.0 - std::log(std::abs(factor)) / phase : no_value;
 }
 
 double NumericalOscillation::period_error(double z) const {
-  return oscillates ? z / phase - 1.0 : none;
+  return oscillates ? z / phase - 1.0 : no_value;
 }
 
 std::vector<NumericalOscillation> numerical_oscillations(const AmplificationFactors& factors,

@@ -7,6 +7,7 @@
 
 #include "analysis/theory/growth_matrices.hpp"
 #include "analysis/theory/single_steps.hpp"
+#include "core/special_values.hpp"
 #include "schemes/derived_properties.hpp"
 #include "schemes/linear_form.hpp"
 #include "schemes/multistep_properties.hpp"
@@ -14,8 +15,6 @@
 namespace fw::analysis {
 
 namespace {
-
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 using WideComplex = std::complex<Float128>;
 
@@ -121,7 +120,7 @@ double SchemeGrowth::of_eigenvalue(Complex z) const {
       return schemes::amplification(*formula_, z.real(), z.imag());
     case GrowthBasis::exponential:
       // Of a scheme for forces f(t, q), nothing is said where there is damping.
-      if (integrator_->info().needs.has(Capability::position_forces) && z.real() != 0.0) return not_known;
+      if (integrator_->info().needs.has(Capability::position_forces) && z.real() != 0.0) return no_value;
       return std::exp(z.real());
     case GrowthBasis::oscillator_matrix:
     case GrowthBasis::two_step_recurrence:
@@ -143,7 +142,7 @@ double SchemeGrowth::of_vibration(double a, double b) const {
       return std::max(of_eigenvalue(-0.5 * b + root), of_eigenvalue(-0.5 * b - root));
     }
     case GrowthBasis::oscillator_matrix:
-      if (b != 0.0 && !stages_->has_velocity()) return not_known;
+      if (b != 0.0 && !stages_->has_velocity()) return no_value;
       return spectral_radius(stages_->of_vibration(a, b));
     case GrowthBasis::two_step_recurrence:
       return spectral_radius(
@@ -158,7 +157,7 @@ double SchemeGrowth::of_vibration(double a, double b) const {
 
 double SchemeGrowth::of_single_steps_on_vibration(double a, double b) const {
   const std::shared_ptr<const OdeSystem> system = vibration(a, b);
-  if (!why_not_applicable(integrator_->info(), *system).empty()) return not_known;
+  if (!why_not_applicable(integrator_->info(), *system).empty()) return no_value;
   return growth_of_steps(*integrator_, system, 1.0);
 }
 
@@ -193,13 +192,13 @@ double SchemeGrowth::of_system(const LinearModes& modes, double h,
       return spectral_radius(verlet_recurrence(rule_, h * h * modes.stiffness, h * modes.damping));
     if (basis_ == GrowthBasis::amplification_matrix)
       return spectral_radius(alpha_step_matrix(alpha_, h * h * modes.stiffness, h * modes.damping));
-    if (!stages_->has_velocity()) return not_known;
+    if (!stages_->has_velocity()) return no_value;
     return spectral_radius(stages_->of_system(modes.stiffness, modes.damping, h));
   }
   double largest = 0.0;
   const bool by_eigenvalue = is_by_eigenvalue() || modes.vibrations.empty();
   const auto consider = [&](double growth) {
-    largest = std::isnan(growth) || std::isnan(largest) ? not_known : std::max(largest, growth);
+    largest = std::isnan(growth) || std::isnan(largest) ? no_value : std::max(largest, growth);
   };
   if (by_eigenvalue) {
     for (const Complex& lambda : modes.eigenvalues) {

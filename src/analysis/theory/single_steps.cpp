@@ -4,14 +4,12 @@
 #include <limits>
 
 #include "analysis/theory/growth_matrices.hpp"
+#include "core/special_values.hpp"
 #include "ode/functor_system.hpp"
 
 namespace fw::analysis {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// ẏ = λ y as a real system.
 struct PlanarFlow {
@@ -79,7 +77,7 @@ Matrix step_matrix(const Integrator& integrator, const std::shared_ptr<const Ode
   const double size_of_step = after[4].topRows(half).cwiseAbs().maxCoeff();
   constexpr double allowed = 1e-6;
   if (!((predicted - after[4].topRows(half)).cwiseAbs().maxCoeff() <= allowed * (size_of_step + 1.0)))
-    return Matrix::Constant(m, m, not_known);
+    return Matrix::Constant(m, m, no_value);
   return transition;
 }
 
@@ -113,7 +111,7 @@ bool carries_more(const MethodInfo& info) {
 double growth_of_steps(const Integrator& integrator, const std::shared_ptr<const OdeSystem>& system,
                        double h) {
   const Matrix m = step_matrix(integrator, system, h);
-  if (m.hasNaN()) return not_known;
+  if (m.hasNaN()) return no_value;
   if (m.rows() == 2 && m.cols() == 2) return spectral_radius(Eigen::Matrix2d(m));
   return spectral_radius(m);
 }

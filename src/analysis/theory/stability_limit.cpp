@@ -1,4 +1,5 @@
 #include "analysis/theory/stability_limit.hpp"
+#include "core/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +9,6 @@
 namespace fw::analysis {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Small, so that a scheme's own bound on the size of a state is far away.
 constexpr double amplitude = 1e-6;
@@ -108,6 +107,33 @@ double largest_stable_step(const std::function<bool(double)>& is_stable, const L
     (is_stable(middle) ? good : bad) = middle;
   }
   return 0.5 * (good + bad);
+}
+
+double resolved_growth(const SchemeGrowth& growth, bool is_of_whole_step, bool is_explicit) {
+  if (is_of_whole_step) return 1e-6;
+  if (growth.basis() == GrowthBasis::stability_function) return 1e-13;
+  if (growth.basis() == GrowthBasis::single_steps) return is_explicit ? 1e-10 : 1e-7;
+  return 1e-9;
+}
+
+double predicted_limit(const SchemeGrowth& growth, const LinearModes& modes,
+                       const std::shared_ptr<const OdeSystem>& system, bool is_explicit, double first,
+                       double farthest, const std::function<void()>& check) {
+  const auto growth_at = [&](double step) {
+    if (check) check();
+    return growth.of_system(modes, step, system);
+  };
+  if (std::isnan(growth_at(first))) return no_value;
+  if (modes.is_undamped && growth.grows_at_every_step()) return 0.0;
+  const bool is_whole = growth.is_of_whole_step(modes, system);
+  const double allowed = 1.0 + resolved_growth(growth, is_whole, is_explicit);
+  return largest_stable_step([&](double step) { return growth_at(step) <= allowed; },
+                             {.first = first,
+                              .ratio = is_whole                                      ? 1.05
+                                       : growth.basis() == GrowthBasis::single_steps ? 1.01
+                                                                                     : 1.002,
+                              .farthest = farthest,
+                              .resolution = 1e-5});
 }
 
 GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "analysis/theory/scheme_growth.hpp"
 #include "ode/integrator.hpp"
 
 namespace fw::analysis {
@@ -26,6 +27,17 @@ struct LimitSearch {
 /// The step up to which all are stable: the first unstable one on a geometric grid, then bisection. Infinite
 /// where every step up to `farthest` is stable; 0 where none is, down to a 64th of the first.
 double largest_stable_step(const std::function<bool(double step)>& is_stable, const LimitSearch& search);
+
+/// Growth per step that counts: beyond what rounding and iterations leave of |R|, of roots of a polynomial, of
+/// eigenvalues of small matrices that may be double, of single steps, or of the matrix of a whole step.
+double resolved_growth(const SchemeGrowth& growth, bool is_of_whole_step, bool is_explicit);
+
+/// The step [s] up to which a scheme multiplies no mode of the system by more than 1, in theory: infinite
+/// where that holds up to `farthest` [s], 0 where an undamped mode grows at every step, NaN where theory has
+/// no answer. `system` as for `SchemeGrowth::of_system`; `check` is called before every look and may throw.
+double predicted_limit(const SchemeGrowth& growth, const LinearModes& modes,
+                       const std::shared_ptr<const OdeSystem>& system, bool is_explicit, double first,
+                       double farthest, const std::function<void()>& check = {});
 
 /// Runs of a scheme from one perturbation, in a norm in which positions and velocities weigh alike.
 class GrowthExperiment {

@@ -9,6 +9,7 @@
 
 #include "analysis/fit/power_law.hpp"
 #include "core/error.hpp"
+#include "core/special_values.hpp"
 #include "settings/identity_text.hpp"
 #include "study/energy/energy_run.hpp"
 
@@ -18,8 +19,6 @@ namespace {
 
 using settings::Archive;
 using settings::setting;
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [energy].
 struct Settings {
@@ -71,7 +70,7 @@ class BinTable {
     std::vector<double> values;
     for (const auto& row : rows_) {
       values.insert(values.end(), row.begin(), row.end());
-      values.insert(values.end(), width - row.size(), none);
+      values.insert(values.end(), width - row.size(), no_value);
     }
     return {std::move(name), std::move(unit), std::move(values), {rows_.size(), width}, {}};
   }
@@ -83,25 +82,25 @@ class BinTable {
 /// The row of the summary.
 struct Row {
   std::string problem, method;
-  double step = none;
+  double step = no_value;
   std::int64_t steps_taken = 0;
-  double relative_drift = none;
-  double drift_over_oscillation = none;
-  double relative_oscillation = none;
-  double growth = none;
-  double predicted_growth = none;
-  double drift_exponent = none;
-  double drift_exponent_low = none;
-  double drift_exponent_high = none;
-  double oscillation_exponent = none;
-  double modified_change = none;
-  double momentum_change = none;
-  double momentum_exponent = none;
-  double angular_momentum_change = none;
-  double balance = none;
-  double balance_exponent = none;
-  double balance_exponent_low = none;
-  double balance_exponent_high = none;
+  double relative_drift = no_value;
+  double drift_over_oscillation = no_value;
+  double relative_oscillation = no_value;
+  double growth = no_value;
+  double predicted_growth = no_value;
+  double drift_exponent = no_value;
+  double drift_exponent_low = no_value;
+  double drift_exponent_high = no_value;
+  double oscillation_exponent = no_value;
+  double modified_change = no_value;
+  double momentum_change = no_value;
+  double momentum_exponent = no_value;
+  double angular_momentum_change = no_value;
+  double balance = no_value;
+  double balance_exponent = no_value;
+  double balance_exponent_low = no_value;
+  double balance_exponent_high = no_value;
 };
 
 void declare(SummaryRow& a, const Row& row) {
@@ -190,14 +189,14 @@ class EnergyCase {
     columns.back().attributes = {{"quantity", problem_.watched.quantity}};
     add("energy_scale", unit, [](const EnergyRun& run) { return run.seen->scale(); });
     const auto drift = [](double analysis::Drift::*member) {
-      return [member](const EnergyRun& run) { return run.drift.valid ? run.drift.*member : none; };
+      return [member](const EnergyRun& run) { return run.drift.valid ? run.drift.*member : no_value; };
     };
     add("drift", rate, drift(&analysis::Drift::slope));
     add("drift_low", rate, drift(&analysis::Drift::slope_low));
     add("drift_high", rate, drift(&analysis::Drift::slope_high));
     add("oscillation", unit, drift(&analysis::Drift::oscillation));
     add("drift_over_oscillation", "1",
-        [](const EnergyRun& run) { return run.drift.valid ? run.drift.significance() : none; });
+        [](const EnergyRun& run) { return run.drift.valid ? run.drift.significance() : no_value; });
     add("correlation", "1", [](const EnergyRun& run) { return run.seen->change().correlation(); });
     add("growth", "1", [](const EnergyRun& run) { return std::expm1(run.growth); });
     add("predicted_growth", "1", [](const EnergyRun& run) { return std::expm1(run.predicted_growth); });
@@ -231,7 +230,7 @@ class EnergyCase {
     if (problem_.watched.is_damped) {
       // A run that stops early has fewer of them than bins.
       const auto padded = [](std::vector<double> values, const EnergyObserver& seen) {
-        values.resize(seen.change().times().size(), none);
+        values.resize(seen.change().times().size(), no_value);
         return values;
       };
       add("work", unit, [&](const EnergyObserver& seen) { return padded(seen.work(), seen); });
@@ -242,7 +241,7 @@ class EnergyCase {
   /// The largest over the runs, relative to the scale of each.
   template <class Series, class Scale>
   double largest_relative(Series series, Scale scale) const {
-    double largest = none;
+    double largest = no_value;
     for (const EnergyRun& run : runs_) {
       if (series(*run.seen))
         largest = std::fmax(largest, series(*run.seen)->largest_magnitude() / scale(*run.seen));
@@ -253,24 +252,24 @@ class EnergyCase {
   /// The law t^a by which rounding moves the linear momentum at the first step: ½ of a random walk.
   double momentum_exponent() const {
     const auto& change = runs_.front().seen->momentum_change();
-    if (!change) return none;
+    if (!change) return no_value;
     const analysis::PowerLaw law = analysis::fit_power_law(change->times(), change->largest());
-    return law.valid ? law.exponent : none;
+    return law.valid ? law.exponent : no_value;
   }
 
   Row row() const {
     const EnergyRun& first = runs_.front();
     const auto scale = [](const EnergyObserver& seen) { return seen.scale(); };
     const double balance =
-        first.seen->balance().empty() ? none : first.seen->balance().back() / first.seen->scale();
+        first.seen->balance().empty() ? no_value : first.seen->balance().back() / first.seen->scale();
     return {
         .problem = problem_.entry.label,
         .method = call_,
         .step = first.step,
         .steps_taken = static_cast<std::int64_t>(first.seen->steps_taken()),
-        .relative_drift = first.drift.valid ? first.relative_drift() : none,
-        .drift_over_oscillation = first.drift.valid ? first.drift.significance() : none,
-        .relative_oscillation = first.drift.valid ? first.drift.oscillation / first.seen->scale() : none,
+        .relative_drift = first.drift.valid ? first.relative_drift() : no_value,
+        .drift_over_oscillation = first.drift.valid ? first.drift.significance() : no_value,
+        .relative_oscillation = first.drift.valid ? first.drift.oscillation / first.seen->scale() : no_value,
         .growth = std::expm1(first.growth),
         .predicted_growth = std::expm1(first.predicted_growth),
         .drift_exponent = exponents_.drift.value,

@@ -8,12 +8,12 @@
 #include <limits>
 
 #include "analysis/fit/power_law.hpp"
+#include "core/special_values.hpp"
 
 namespace fw::study {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Statements that hold or fail, each with its figures.
@@ -238,7 +238,7 @@ double EnergyRun::relative_drift() const {
   for (const double mean : seen->change().means()) {
     if (std::isfinite(mean)) last = mean / seen->scale();
   }
-  return std::abs(change) < largest && std::abs(last) < largest && !has_blown_up() ? change : none;
+  return std::abs(change) < largest && std::abs(last) < largest && !has_blown_up() ? change : no_value;
 }
 
 bool EnergyRun::has_blown_up() const {
@@ -263,7 +263,7 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   run.end_time = solution.time;
   run.drift = analysis::fit_drift(run.seen->change());
 
-  run.growth = run.predicted_growth = run.growth_tolerance = none;
+  run.growth = run.predicted_growth = run.growth_tolerance = no_value;
   const std::optional<analysis::BinnedSeries>& logarithm = run.seen->logarithm();
   if (logarithm && logarithm->count() > 10) {
     const double taken = static_cast<double>(logarithm->count());
@@ -287,7 +287,7 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
 }
 
 StepExponent exponent_in_step(const std::vector<double>& steps, const std::vector<double>& values) {
-  StepExponent exponent{none, none, none, static_cast<int>(steps.size())};
+  StepExponent exponent{no_value, no_value, no_value, static_cast<int>(steps.size())};
   if (steps.size() == 2) {
     exponent.value = std::log(values[0] / values[1]) / std::log(steps[0] / steps[1]);
   } else if (const analysis::PowerLaw law = analysis::fit_power_law(steps, values); law.valid) {

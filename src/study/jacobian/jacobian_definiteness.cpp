@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "analysis/theory/definiteness.hpp"
+#include "core/special_values.hpp"
 #include "study/jacobian/implicit_euler_equation.hpp"
 #include "study/jacobian/jacobian_row.hpp"
 
 namespace fw::study {
 
 namespace {
-
-constexpr double none = JacobianRow::none;
 
 /// Failed iterations in columns of counts.
 constexpr std::int64_t failed = -1;
@@ -54,7 +53,7 @@ double limit_step(const Ivp& ivp, integrators::StepMatrix& assembly, TangentMode
   const auto is_definite = [&](double step) {
     return analysis::is_positive_definite(step_matrix(ivp, assembly, step, model));
   };
-  if (is_definite(top)) return none;
+  if (is_definite(top)) return no_value;
   double low = 0.0, high = top;
   while (high - low > 1e-10 * high) {
     const double middle = 0.5 * (low + high);
@@ -102,7 +101,7 @@ double mean_of_successes(const std::vector<std::int64_t>& counts) {
     sum += static_cast<double>(count);
     number += 1.0;
   }
-  return number > 0.0 ? sum / number : none;
+  return number > 0.0 ? sum / number : no_value;
 }
 
 double failures(const std::vector<std::int64_t>& counts) {
@@ -144,7 +143,7 @@ class DefinitenessCase {
 
  private:
   static double least(const std::vector<double>& limits) {
-    double result = none;
+    double result = no_value;
     for (const double limit : limits) {
       if (!std::isnan(limit) && !(result <= limit)) result = limit;
     }
@@ -178,9 +177,9 @@ class DefinitenessCase {
 
   /// psd_projection is definite by construction; of the others the spectrum tells.
   double predict(const Tangents& tangent, const SecondOrderSystem& system, double top) const {
-    if (model_ == TangentModel::psd_projection) return none;
+    if (model_ == TangentModel::psd_projection) return no_value;
     const double rate = analysis::fastest_growth_rate(tangent.K, tangent.D, system.mass());
-    return rate > 1.0 / top ? 1.0 / rate : none;
+    return rate > 1.0 / top ? 1.0 / rate : no_value;
   }
 
   void check_limits() {

@@ -9,6 +9,7 @@
 
 #include "analysis/fit/power_law.hpp"
 #include "analysis/theory/numerical_jacobian.hpp"
+#include "core/special_values.hpp"
 #include "study/jacobian/jacobian_row.hpp"
 #include "study/jacobian/printed_stiffness.hpp"
 
@@ -51,18 +52,18 @@ Derivatives by_complex_steps(const JacobianSample& sample) {
 
 /// Largest deviation over the largest entry of the oracle; absolute where that is zero, NaN where empty.
 double relative_deviation(const Matrix& found, const Matrix& oracle) {
-  if (oracle.size() == 0) return JacobianRow::none;
+  if (oracle.size() == 0) return no_value;
   const double scale = oracle.cwiseAbs().maxCoeff();
   const double deviation = (found - oracle).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
   return scale > 0.0 ? deviation / scale : deviation;
 }
 
 double largest(const std::vector<double>& values) {
-  return values.empty() ? JacobianRow::none : *std::max_element(values.begin(), values.end());
+  return values.empty() ? no_value : *std::max_element(values.begin(), values.end());
 }
 
 double smallest(const std::vector<double>& values) {
-  return values.empty() ? JacobianRow::none : *std::min_element(values.begin(), values.end());
+  return values.empty() ? no_value : *std::min_element(values.begin(), values.end());
 }
 
 void run_analytic(const std::vector<JacobianSample>& samples, const DerivativeSettings& settings,
@@ -165,7 +166,7 @@ std::vector<double> error_curve(const std::vector<JacobianSample>& samples, Diff
                                                      increment[k] * length, difference);
       const double error = relative_deviation(parts_of(*sample.system, J).K, oracle);
       if (error == 0.0) continue;
-      logarithms[k] += std::isfinite(error) ? std::log(error) : JacobianRow::none;
+      logarithms[k] += std::isfinite(error) ? std::log(error) : no_value;
       counts[k] += 1.0;
     }
   }

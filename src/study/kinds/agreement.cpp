@@ -16,14 +16,14 @@ namespace {
 using settings::Archive;
 using settings::setting;
 
-struct Spec {
+struct AgreementSpec {
   MethodPatterns methods;
   AgreementSettings settings;
   std::vector<ProblemSpec> problems;
   std::int64_t quick_problems = 2;
 };
 
-void declare(Archive& a, Spec& spec) {
+void declare(Archive& a, AgreementSpec& spec) {
   declare(a, spec.methods);
   a.section({"agreement", "How far methods are refined."}, spec.settings);
   a.sections(problem_sections, spec.problems);
@@ -51,7 +51,7 @@ void check(const AgreementSettings& settings, const StudyInput& input) {
   }
 }
 
-void plan_agreement(const Spec& spec, const StudyInput& input, Plan& plan) {
+void plan_agreement(const AgreementSpec& spec, const StudyInput& input, Plan& plan) {
   const AgreementSettings& settings = spec.settings;
   check(settings, input);
   const auto given = static_cast<std::int64_t>(spec.problems.size());
@@ -81,7 +81,7 @@ void plan_agreement(const Spec& spec, const StudyInput& input, Plan& plan) {
 }  // namespace
 
 StudyKind agreement_kind() {
-  return declared_kind<Spec>(
+  return declared_kind<AgreementSpec>(
       {.name = "agreement",
        .title = "Agreement of all methods",
        .description =

@@ -21,7 +21,7 @@ constexpr double safety = 2.0;
 constexpr double rounding_level = 1e-11;
 
 /// One row of the matrix.
-struct Row {
+struct MatrixRow {
   std::string name;
   std::string family;
   analysis::ConvergedRun run;
@@ -62,7 +62,7 @@ class AgreementCase {
       not_compared_.push_back("the certified reference: " + reference.status.describe());
       return;
     }
-    Row row;
+    MatrixRow row;
     row.name = entry().problem.exact ? "exact" : "certified";
     row.family = "reference";
     row.run.state = reference.states.front().rounded();
@@ -83,7 +83,7 @@ class AgreementCase {
                                   .fewest_steps = static_cast<std::uint64_t>(settings_.fewest_steps),
                                   .most_steps = static_cast<std::uint64_t>(settings_.most_steps),
                                   .stop = context_.stop};
-    Row row;
+    MatrixRow row;
     row.name = participant.call;
     row.family = info.family;
     try {
@@ -166,7 +166,7 @@ class AgreementCase {
       }
     }
     const auto compared =
-        std::count_if(rows_.begin(), rows_.end(), [](const Row& row) { return row.compared; });
+        std::count_if(rows_.begin(), rows_.end(), [](const MatrixRow& row) { return row.compared; });
     const Verdict verdict = disagreeing > 0 || !refused_.empty() ? Verdict::fails
                             : pairs == 0                         ? Verdict::not_applicable
                                                                  : Verdict::holds;
@@ -197,7 +197,7 @@ class AgreementCase {
     std::vector<double> steps, tolerances, estimates, seconds, states;
     std::vector<std::int64_t> compared, evaluations;
     const Index size = ivp().system->size();
-    for (const Row& row : rows_) {
+    for (const MatrixRow& row : rows_) {
       names.push_back(row.name);
       families.push_back(row.family);
       status.push_back(std::string(to_string(row.run.status.code)));
@@ -246,7 +246,7 @@ class AgreementCase {
   const RunContext& context_;
   StateScale scale_;
   bool has_scale_ = false;
-  std::vector<Row> rows_;
+  std::vector<MatrixRow> rows_;
   std::vector<std::string> not_compared_;  ///< methods and why
   std::vector<std::string> refused_;       ///< methods that refuse the problem, and how
   std::int64_t not_applicable_ = 0;

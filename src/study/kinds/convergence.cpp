@@ -10,6 +10,7 @@
 
 #include "analysis/fit/order_fit.hpp"
 #include "core/error.hpp"
+#include "core/special_values.hpp"
 #include "settings/identity_text.hpp"
 #include "study/measure/error_meter.hpp"
 #include "study/measure/step_ladder.hpp"
@@ -23,8 +24,6 @@ namespace {
 
 using settings::Archive;
 using settings::setting;
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The keys of [convergence].
 struct Settings {
@@ -57,13 +56,13 @@ void declare(Archive& a, Settings& s) {
         .doc("least correlation that holds"));
 }
 
-struct Spec {
+struct ConvergenceSpec {
   std::vector<std::string> methods;
   Settings settings;
   std::vector<ProblemSpec> problems;
 };
 
-void declare(Archive& a, Spec& spec) {
+void declare(Archive& a, ConvergenceSpec& spec) {
   a(methods_setting(spec.methods));
   a.section({"convergence", "How orders are measured."}, spec.settings);
   a.sections(problem_sections, spec.problems);
@@ -82,19 +81,19 @@ constexpr double slope_tolerance = 0.05;
 
 /// A fitted order in the summary.
 struct RowFit {
-  double order = none, order_low = none, order_high = none, correlation = none;
+  double order = no_value, order_low = no_value, order_high = no_value, correlation = no_value;
   std::int64_t points = 0;
 };
 
 /// The row of the summary.
-struct Row {
+struct ConvergenceRow {
   std::string problem, method;
   std::int64_t expected_order = 0;
   RowFit all{}, position{}, velocity{};
-  double reference_error = none;
+  double reference_error = no_value;
 };
 
-void declare(SummaryRow& a, const Row& row) {
+void declare(SummaryRow& a, const ConvergenceRow& row) {
   a("problem", "", row.problem, "its label");
   a("method", "", row.method, "as in the study, with settings");
   a("expected_order", "1", row.expected_order, "by theory");
@@ -356,7 +355,7 @@ class ConvergenceCase {
                        scale().position, scale().velocity);
   }
 
-  Row row() const {
+  ConvergenceRow row() const {
     const auto figure = [](const std::optional<analysis::OrderFit>& order_fit) {
       RowFit seen;
       if (!order_fit) return seen;
@@ -368,7 +367,7 @@ class ConvergenceCase {
       seen.correlation = order_fit->correlation;
       return seen;
     };
-    Row row{.problem = problem_.label, .method = call_, .expected_order = expected_order()};
+    ConvergenceRow row{.problem = problem_.label, .method = call_, .expected_order = expected_order()};
     row.all = figure(fit_);
     row.position = figure(fit_position_);
     row.velocity = figure(fit_velocity_);
@@ -391,7 +390,7 @@ class ConvergenceCase {
   std::optional<analysis::OrderFit> fit_position_, fit_velocity_;
 };
 
-void plan_convergence(const Spec& spec, const StudyInput& input, Plan& plan) {
+void plan_convergence(const ConvergenceSpec& spec, const StudyInput& input, Plan& plan) {
   const Settings& settings = spec.settings;
   const std::string identity = settings::identity_text(settings);
   const std::vector<std::string>& methods = checked_methods(spec.methods, input.file, input.catalog);
@@ -414,12 +413,12 @@ void plan_convergence(const Spec& spec, const StudyInput& input, Plan& plan) {
 }  // namespace
 
 StudyKind convergence_kind() {
-  return declared_kind<Spec>(
+  return declared_kind<ConvergenceSpec>(
       {.name = "convergence",
        .title = "Observed order of accuracy",
        .description =
            "error against step for every method on every problem, fitted order with a 95 % interval",
-       .summary = columns_of<Row>(),
+       .summary = columns_of<ConvergenceRow>(),
        .verdict_meaning = "",
        .reason_meaning = ""},
       plan_convergence);

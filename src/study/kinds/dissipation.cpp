@@ -16,12 +16,12 @@ namespace {
 
 using settings::Archive;
 
-struct Spec {
+struct DissipationSpec {
   std::vector<std::string> methods;
   DissipationSettings settings;
 };
 
-void declare(Archive& a, Spec& spec) {
+void declare(Archive& a, DissipationSpec& spec) {
   a(methods_setting(spec.methods));
   a.section({"dissipation", "The spring, and the range of z = ωh."}, spec.settings);
   a.quick_section();
@@ -49,7 +49,7 @@ void check(const DissipationSettings& s, const CheckedTable& table) {
   }
 }
 
-void plan_dissipation(const Spec& spec, const StudyInput& input, Plan& plan) {
+void plan_dissipation(const DissipationSpec& spec, const StudyInput& input, Plan& plan) {
   const DissipationSettings& settings = spec.settings;
   check(settings, input.section("dissipation"));
   const Catalog& catalog = input.catalog;
@@ -76,7 +76,7 @@ void plan_dissipation(const Spec& spec, const StudyInput& input, Plan& plan) {
 }  // namespace
 
 StudyKind dissipation_kind() {
-  return declared_kind<Spec>(
+  return declared_kind<DissipationSpec>(
       {.name = "dissipation",
        .title = "Numerical damping and period error",
        .description =

@@ -1,4 +1,5 @@
 #include "study/kinds/dissipation_case.hpp"
+#include "core/special_values.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +11,6 @@
 namespace fw::study {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A fit with a larger relative residual saw more than one pair of factors.
 constexpr double largest_residual = 1e-9;
@@ -82,7 +81,8 @@ class DissipationCase {
       if (!(found.residual <= largest_residual)) found.points = 0;
       measured_.push_back(found);
       // The angle per step is known up to its sign and whole turns: the nearest to where it should have gone.
-      phase = found.points == 0 ? none : unwrapped(found.angle, std::isnan(phase) ? z : phase + (z - before));
+      phase =
+          found.points == 0 ? no_value : unwrapped(found.angle, std::isnan(phase) ? z : phase + (z - before));
       phases_.push_back(phase);
       before = z;
     }
@@ -117,7 +117,7 @@ class DissipationCase {
 
   void judge() {
     std::size_t due = 0, compared = 0;
-    double worst_z = none;
+    double worst_z = no_value;
     for (std::size_t k = 0; k < theory_.size(); ++k) {
       if (!is_measurable(theory_[k], settings_.transient_steps)) continue;
       ++due;
@@ -192,15 +192,15 @@ class DissipationCase {
     for (std::size_t k = 0; k < z_.size(); ++k) {
       per_period.push_back(2.0 * std::numbers::pi / z_[k]);
       const bool known = k < theory_.size();
-      damping.push_back(known ? theory_[k].damping_ratio() : none);
-      period.push_back(known ? theory_[k].period_error(z_[k]) : none);
-      radius.push_back(known ? theory_[k].spectral_radius : none);
+      damping.push_back(known ? theory_[k].damping_ratio() : no_value);
+      period.push_back(known ? theory_[k].period_error(z_[k]) : no_value);
+      radius.push_back(known ? theory_[k].spectral_radius : no_value);
       const analysis::MeasuredOscillation& found = measured_[k];
       const bool fitted = found.points > 0;
       const bool swings = fitted && found.oscillates;
-      measured_damping.push_back(swings ? -std::log(found.spectral_radius) / phases_[k] : none);
-      measured_period.push_back(swings ? z_[k] / phases_[k] - 1.0 : none);
-      measured_radius.push_back(fitted ? found.spectral_radius : none);
+      measured_damping.push_back(swings ? -std::log(found.spectral_radius) / phases_[k] : no_value);
+      measured_period.push_back(swings ? z_[k] / phases_[k] - 1.0 : no_value);
+      measured_radius.push_back(fitted ? found.spectral_radius : no_value);
       residual.push_back(found.residual);
     }
     return {{"frequency_step", "1", z_, {}, {}},
@@ -242,8 +242,8 @@ class DissipationCase {
   analysis::NumericalOscillation shown_theory_;
   std::vector<analysis::MeasuredOscillation> measured_;
   analysis::MeasuredOscillation shown_measured_;
-  double radius_at_infinity_ = none, radius_far_out_ = none, measured_radius_at_infinity_ = none,
-         largest_difference_ = none;
+  double radius_at_infinity_ = no_value, radius_far_out_ = no_value, measured_radius_at_infinity_ = no_value,
+         largest_difference_ = no_value;
   std::int64_t compared_ = 0;
   Motion motion_;
   std::vector<double> exact_positions_;

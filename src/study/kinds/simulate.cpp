@@ -52,7 +52,7 @@ void add_exact(const StudyProblem& entry, CaseResult& result) {
 }
 
 /// The row of the summary.
-struct Row {
+struct SimulateRow {
   std::string problem, method;
   double step = std::numeric_limits<double>::quiet_NaN();
   double end_time = std::numeric_limits<double>::quiet_NaN();
@@ -60,7 +60,7 @@ struct Row {
   Status status{};
 };
 
-void declare(SummaryRow& a, const Row& row) {
+void declare(SummaryRow& a, const SimulateRow& row) {
   a("problem", "", row.problem, "its label");
   a("method", "", row.method, "as in the study; `vector field` in that case");
   a("step", "s", row.step, "NaN if the method chooses its steps, and of the vector field");
@@ -115,7 +115,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = cells_of(Row{entry.label, call, step, solution.time, end_error, solution.status});
+  result.summary = cells_of(SimulateRow{entry.label, call, step, solution.time, end_error, solution.status});
   return result;
 }
 
@@ -159,7 +159,7 @@ CaseResult sample_field(const StudyProblem& entry, const FieldGrid& grid) {
   result.columns = {{"field_t", "s", times, {}, {}},
                     {"field_y", "SI", states, {times.size(), size}, {}},
                     {"field_dydt", "SI/s", slopes, {times.size(), size}, {}}};
-  result.summary = cells_of(Row{.problem = entry.label, .method = "vector field"});
+  result.summary = cells_of(SimulateRow{.problem = entry.label, .method = "vector field"});
   return result;
 }
 
@@ -197,7 +197,7 @@ void declare(Archive& a, Tolerances& tolerances) {
   a(setting("absolute", tolerances.absolute).unit("SI").positive().doc("likewise"));
 }
 
-struct Spec {
+struct SimulateSpec {
   std::vector<std::string> methods;
   std::optional<std::vector<double>> steps;
   std::int64_t frames = 101;
@@ -207,7 +207,7 @@ struct Spec {
   std::vector<ProblemSpec> problems;
 };
 
-void declare(Archive& a, Spec& spec) {
+void declare(Archive& a, SimulateSpec& spec) {
   a(methods_setting(spec.methods));
   a(setting("steps", spec.steps)
         .unit("s")
@@ -258,7 +258,7 @@ void check_step(const MethodInfo& info, const Ivp& ivp, double step) {
   }
 }
 
-void plan_simulate(const Spec& study, const StudyInput& input, Plan& plan) {
+void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& plan) {
   const CheckedTable& spec = input.file;
   const Catalog& catalog = input.catalog;
   const std::vector<std::string>& methods = checked_methods(study.methods, spec, catalog);
@@ -331,11 +331,11 @@ void plan_simulate(const Spec& study, const StudyInput& input, Plan& plan) {
 }  // namespace
 
 StudyKind simulate_kind() {
-  return declared_kind<Spec>(
+  return declared_kind<SimulateSpec>(
       {.name = "simulate",
        .title = "Trajectories",
        .description = "states over time for every method, step and problem, with the exact solution",
-       .summary = columns_of<Row>(),
+       .summary = columns_of<SimulateRow>(),
        .verdict_meaning = "`holds`: reached the end; `not applicable`: with an energy from nowhere",
        .reason_meaning = ""},
       plan_simulate);

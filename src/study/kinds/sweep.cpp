@@ -100,13 +100,13 @@ void declare(Archive& a, ParameterSpec& parameter) {
              "keeps them in its `spec`"));
 }
 
-struct Spec {
+struct SweepSpec {
   std::vector<ParameterSpec> parameters;
   std::vector<std::string> quantities;
   std::int64_t quick_values = 2;
 };
 
-void declare(Archive& a, Spec& spec) {
+void declare(Archive& a, SweepSpec& spec) {
   a(setting("quantities", spec.quantities)
         .selects_cases()
         .doc("columns of the summary that the plot shows; none: the first number that varies"));
@@ -184,7 +184,7 @@ Parameter make_parameter(const ParameterSpec& spec, const CheckedTable& section,
   return parameter;
 }
 
-std::vector<Parameter> make_parameters(const Spec& spec, const StudyInput& input) {
+std::vector<Parameter> make_parameters(const SweepSpec& spec, const StudyInput& input) {
   std::vector<Parameter> parameters;
   std::set<std::string> names;
   const std::vector<CheckedTable> sections = input.file.tables("parameter");
@@ -311,7 +311,8 @@ std::vector<TomlAssignment> inherited(const CheckedTable& study, const Plan& pla
   return assignments;
 }
 
-void plan_sweep(const Spec& sweep, const StudyInput& input, const std::vector<StudyKind>& kinds, Plan& plan) {
+void plan_sweep(const SweepSpec& sweep, const StudyInput& input, const std::vector<StudyKind>& kinds,
+                Plan& plan) {
   const CheckedTable& spec = input.file;
   const std::vector<Parameter> parameters = make_parameters(sweep, input);
   const CheckedTable study = spec.table("study");
@@ -360,11 +361,11 @@ void plan_sweep(const Spec& sweep, const StudyInput& input, const std::vector<St
 }  // namespace
 
 StudyKind sweep_kind(std::vector<StudyKind> kinds) {
-  return declared_kind<Spec>(
+  return declared_kind<SweepSpec>(
       {.name = "sweep",
        .title = "A study over a grid of parameters",
        .description = "any other kind of study at every combination of values for some of its keys"},
-      [kinds = std::move(kinds)](const Spec& spec, const StudyInput& input, Plan& plan) {
+      [kinds = std::move(kinds)](const SweepSpec& spec, const StudyInput& input, Plan& plan) {
         plan_sweep(spec, input, kinds, plan);
       });
 }

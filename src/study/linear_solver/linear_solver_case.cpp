@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "core/special_values.hpp"
 #include "linalg/linear_solver.hpp"
 #include "study/linear_solver/step_spectrum.hpp"
 #include "study/linear_solver/step_systems.hpp"
@@ -15,20 +16,18 @@ namespace fw::study {
 
 namespace {
 
-constexpr double none = LinearSolverRow::none;
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 double smallest(const std::vector<double>& values) {
-  return values.empty() ? none : *std::min_element(values.begin(), values.end());
+  return values.empty() ? no_value : *std::min_element(values.begin(), values.end());
 }
 
 double mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (double value : values) sum += value;
-  return values.empty() ? none : sum / static_cast<double>(values.size());
+  return values.empty() ? no_value : sum / static_cast<double>(values.size());
 }
 
 LinearSolverRow row_of(const SystemSpec& system, LinearSolverRow figures) {
@@ -174,10 +173,10 @@ class SolverCase {
       if (!solve.status.ok()) return solve.status;
       if (Status status = check(solve.relative_residual); !status.ok()) return status;
       const std::size_t heap_after = heap_usage();
-      figures_.memory = heap_after > heap_before ? static_cast<double>(heap_after - heap_before) : none;
+      figures_.memory = heap_after > heap_before ? static_cast<double>(heap_after - heap_before) : no_value;
       figures_.residual = solve.relative_residual;
       figures_.iterations =
-          is_iterative() && solve.iterations > 0 ? static_cast<double>(solve.iterations) : none;
+          is_iterative() && solve.iterations > 0 ? static_cast<double>(solve.iterations) : no_value;
       most_iterations_ = std::max(most_iterations_, static_cast<std::int64_t>(solve.iterations));
     }
     figures_.assembly = smallest(assembly_);

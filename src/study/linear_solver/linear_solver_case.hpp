@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/special_values.hpp"
 #include "study/problem_spec.hpp"
 
 namespace fw::study {
@@ -27,15 +28,15 @@ struct SystemSpec {
 
 /// What is known of a case for its row of the summary; NaN where it does not apply.
 struct LinearSolverRow {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   std::string solver;
   std::int64_t unknowns = 0;
-  double assembly = none, first_setup = none, setup = none, solve = none, memory = none, residual = none;
-  double iterations = none, iterations_warm = none, iterations_kept = none, difference = none;
-  double smallest_eigenvalue = none, largest_eigenvalue = none, condition = none,
-         condition_block_jacobi = none;
+  double assembly = no_value, first_setup = no_value, setup = no_value, solve = no_value, memory = no_value,
+         residual = no_value;
+  double iterations = no_value, iterations_warm = no_value, iterations_kept = no_value, difference = no_value;
+  double smallest_eigenvalue = no_value, largest_eigenvalue = no_value, condition = no_value,
+         condition_block_jacobi = no_value;
   std::string problem{};
-  double step = none;
+  double step = no_value;
 };
 void declare(SummaryRow& a, const LinearSolverRow& row);
 

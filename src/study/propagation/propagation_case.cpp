@@ -9,12 +9,11 @@
 
 #include "analysis/fit/binned_series.hpp"
 #include "analysis/theory/influence_front.hpp"
+#include "core/special_values.hpp"
 
 namespace fw::study {
 
 namespace {
-
-constexpr double none = PropagationRow::none;
 
 /// ∫₀ⁿ J_n(x) dx → 1/3: where a kick's displacement has reached a third of its final value, there the front
 /// is that travels at the speed of long waves [Watson 1944, 8.43].
@@ -58,14 +57,14 @@ class FrontObserver final : public Observer {
  private:
   /// In a chain, where the displacement falls below the wave's level, between masses by interpolation.
   double wave_front(const Vector& u) const {
-    if (std::isnan(plateau_)) return none;
+    if (std::isnan(plateau_)) return no_value;
     const double level = wave_level * plateau_;
     for (Index i = u.size() - 2; i >= network_.disturbed; --i) {
       if (u[i] >= level && u[i + 1] < level) {
         return static_cast<double>(i - network_.disturbed) + (u[i] - level) / (u[i] - u[i + 1]);
       }
     }
-    return none;
+    return no_value;
   }
 
   const DisturbedNetwork& network_;
@@ -86,7 +85,7 @@ class PropagationCase {
         context_(context),
         // Of a kick in an endless chain every mass ends up displaced by v/(2ω).
         seen_(network, settings.threshold,
-              network.is_kicked ? 0.5 * settings.size / network.wave_speed : none) {
+              network.is_kicked ? 0.5 * settings.size / network.wave_speed : no_value) {
     const analysis::InfluenceFront start =
         network.is_kicked ? analysis::InfluenceFront{-1, 0} : analysis::InfluenceFront{0, -1};
     predicted_ = analysis::predict_fronts(data, start, network.farthest,
@@ -112,7 +111,7 @@ class PropagationCase {
     while (last + 1 < fronts.size() && fronts[last].*front < network_.farthest) ++last;
     // Where the last step was cut short by the end of the network, the one before.
     const std::size_t first = std::min<std::size_t>(2, last / 2);
-    if (last == 0) return none;
+    if (last == 0) return no_value;
     std::size_t end = last;
     if (fronts[end].*front == network_.farthest && end > first + 1) --end;
     // A whole number of steps in which the front moves on, so that halves come out as halves.
@@ -252,7 +251,7 @@ class PropagationCase {
   FrontObserver seen_;
   analysis::PredictedFronts predicted_;
   Solution solution_;
-  double speed_ = none;
+  double speed_ = no_value;
 };
 
 }  // namespace

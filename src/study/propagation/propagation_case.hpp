@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/special_values.hpp"
 #include "schemes/scheme_data.hpp"
 #include "study/propagation/disturbed_network.hpp"
 
@@ -29,13 +30,12 @@ void declare(settings::Archive& a, PropagationSettings& s);
 
 /// The row of the summary.
 struct PropagationRow {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   std::string problem, method;
-  double step = none;
+  double step = no_value;
   std::int64_t farthest = 0;
-  double springs_per_step = none;
+  double springs_per_step = no_value;
   std::int64_t first_step_velocity = -1, first_step_position = -1;
-  double wave_springs_per_step = none, wave_speed = none, physical_wave_speed = none;
+  double wave_springs_per_step = no_value, wave_speed = no_value, physical_wave_speed = no_value;
 };
 void declare(SummaryRow& a, const PropagationRow& row);
 

@@ -11,6 +11,7 @@
 
 #include "analysis/theory/linear_modes.hpp"
 #include "analysis/theory/scheme_growth.hpp"
+#include "core/special_values.hpp"
 #include "study/plan.hpp"
 #include "study/problem_spec.hpp"
 
@@ -87,23 +88,22 @@ struct StabilityFamily {
 
 /// The row of the summary that every case has.
 struct StabilityRow {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   std::string part, problem, method, basis;
-  double real_interval = none, imaginary_interval = none, angle = none, at_infinity = none;
-  double spectral_radius = none;
-  double predicted = none, observed = none, ratio = none;
-  double monotone_predicted = none, monotone_observed = none;
-  double largest_deviation = none;
-  double expected_exponent = none;
-  double predicted_exponent = none, predicted_exponent_low = none, predicted_exponent_high = none;
-  double observed_exponent = none, observed_exponent_low = none, observed_exponent_high = none;
+  double real_interval = no_value, imaginary_interval = no_value, angle = no_value, at_infinity = no_value;
+  double spectral_radius = no_value;
+  double predicted = no_value, observed = no_value, ratio = no_value;
+  double monotone_predicted = no_value, monotone_observed = no_value;
+  double largest_deviation = no_value;
+  double expected_exponent = no_value;
+  double predicted_exponent = no_value, predicted_exponent_low = no_value, predicted_exponent_high = no_value;
+  double observed_exponent = no_value, observed_exponent_low = no_value, observed_exponent_high = no_value;
 };
 void declare(SummaryRow& a, const StabilityRow& row);
 
 /// What is found of one problem.
 struct StabilityLimit {
-  double predicted = StabilityRow::none, observed = StabilityRow::none;  ///< largest stable step [s]
-  double monotone_predicted = StabilityRow::none, monotone_observed = StabilityRow::none;
+  double predicted = no_value, observed = no_value;  ///< largest stable step [s]
+  double monotone_predicted = no_value, monotone_observed = no_value;
   std::int64_t steps = 0;  ///< of a run of the search
   bool is_confirmed_by_growth = false;
   /// Measured over predicted ln of the factor per step, where growth is the evidence.
@@ -113,7 +113,7 @@ struct StabilityLimit {
 
   double ratio() const {
     if (std::isinf(predicted) && std::isinf(observed)) return 1.0;
-    return predicted > 0.0 ? observed / predicted : StabilityRow::none;
+    return predicted > 0.0 ? observed / predicted : no_value;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/fit/power_law.hpp"
+#include "core/special_values.hpp"
 #include "study/stability/stability_cases.hpp"
 
 namespace fw::study {
@@ -11,8 +12,6 @@ namespace fw::study {
 namespace {
 
 using analysis::SchemeGrowth;
-
-constexpr double none = StabilityRow::none;
 
 /// A case of a family.
 class LimitCase {

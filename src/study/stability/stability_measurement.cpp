@@ -4,6 +4,7 @@
 #include <random>
 
 #include "analysis/theory/stability_limit.hpp"
+#include "core/special_values.hpp"
 #include "study/stability/stability_cases.hpp"
 
 namespace fw::study {
@@ -13,9 +14,6 @@ namespace {
 using analysis::GrowthExperiment;
 using analysis::LinearModes;
 using analysis::SchemeGrowth;
-
-constexpr double none = StabilityRow::none;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The smallest step of a search, in units of 1/|λ|: below the limit of every scheme that has one.
 constexpr double first_step = 0.05;
@@ -68,37 +66,18 @@ class LimitMeasurement {
     double smallest = infinity;
     for (const LinearModes& modes : spectrum_.modes) {
       const double limit = predict(modes);
-      if (std::isnan(limit)) return none;
+      if (std::isnan(limit)) return no_value;
       smallest = std::min(smallest, limit);
     }
     return smallest;
   }
 
   double predict(const LinearModes& modes) const {
-    const bool is_whole = growth_.is_of_whole_step(modes, exact_system());
-    if (std::isnan(growth_at(modes, first_step * unit()))) return none;
-    if (modes.is_undamped && growth_.grows_at_every_step()) return 0.0;
-    const double allowed = 1.0 + resolved_growth(is_whole);
-    return analysis::largest_stable_step([&](double step) { return growth_at(modes, step) <= allowed; },
-                                         {.first = first_step * unit(),
-                                          .ratio = is_whole        ? 1.05
-                                                   : is_by_steps() ? 1.01
-                                                                   : 1.002,
-                                          .farthest = farthest(),
-                                          .resolution = 1e-5});
+    return analysis::predicted_limit(growth_, modes, exact_system(), method_.integrator->info().is_explicit,
+                                     first_step * unit(), farthest(), [this] { context_.check(); });
   }
 
   bool is_by_steps() const { return growth_.basis() == analysis::GrowthBasis::single_steps; }
-
-  /// Growth per step beyond rounding: of |R|; of roots of a polynomial and eigenvalues of small matrices,
-  /// which may be double; of single steps (of implicit schemes to what their iterations leave); of large
-  /// matrices.
-  double resolved_growth(bool is_whole) const {
-    if (is_whole) return 1e-6;
-    if (growth_.basis() == analysis::GrowthBasis::stability_function) return 1e-13;
-    if (is_by_steps()) return method_.integrator->info().is_explicit ? 1e-10 : 1e-7;
-    return 1e-9;
-  }
 
   /// So many steps that 1 % beyond the predicted limit grows clearly; 0: not with as many as are allowed.
   std::int64_t steps_for(double predicted) const {
@@ -169,7 +148,9 @@ class LimitMeasurement {
     const bool is_rational = growth_.basis() == analysis::GrowthBasis::stability_function ||
                              (growth_.basis() == analysis::GrowthBasis::single_steps && !info.is_multistep &&
                               !info.carries_more_than_state && !info.needs.has(Capability::second_order));
-    const double resolved = is_by_steps() ? resolved_growth(false) : 1e-14;
+    const double resolved =
+        is_by_steps() ? analysis::resolved_growth(growth_, false, method_.integrator->info().is_explicit)
+                      : 1e-14;
     const double bound =
         is_rational ? 1.0 + 0.75 * resolved * static_cast<double>(settings_.most_steps) : 1.2;
     limit.observed = analysis::largest_stable_step(

@@ -6,6 +6,7 @@
 
 #include "analysis/theory/stability_limit.hpp"
 #include "analysis/verification/verification.hpp"
+#include "core/special_values.hpp"
 #include "schemes/multistep_properties.hpp"
 #include "study/stability/stability_cases.hpp"
 
@@ -16,8 +17,6 @@ namespace {
 using analysis::GrowthBasis;
 using analysis::SchemeGrowth;
 
-constexpr double none = StabilityRow::none;
-
 double at(double from, double to, std::int64_t k, std::int64_t count) {
   return from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
 }
@@ -26,7 +25,7 @@ double at(double from, double to, std::int64_t k, std::int64_t count) {
 double interval(const std::function<double(double)>& growth) {
   constexpr double rounding = 1e-9;
   const double first = 0.01;
-  if (std::isnan(growth(first))) return none;
+  if (std::isnan(growth(first))) return no_value;
   return analysis::largest_stable_step([&](double x) { return growth(x) <= 1.0 + rounding; },
                                        {.first = first, .ratio = 1.02, .farthest = 1e4, .resolution = 1e-6});
 }
@@ -80,8 +79,8 @@ void add_root_locus(const schemes::MultistepFormula& formula, CaseResult& result
       sigma = sigma * zeta + schemes::as<double>(formula.beta[j]);
     }
     const bool is_pole = std::abs(sigma) < 1e-12;
-    real.push_back(is_pole ? none : (rho / sigma).real());
-    imaginary.push_back(is_pole ? none : (rho / sigma).imag());
+    real.push_back(is_pole ? no_value : (rho / sigma).real());
+    imaginary.push_back(is_pole ? no_value : (rho / sigma).imag());
   }
   result.columns.push_back({"locus_real", "1", real, {}, {}});
   result.columns.push_back({"locus_imaginary", "1", imaginary, {}, {}});

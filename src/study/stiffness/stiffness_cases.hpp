@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/special_values.hpp"
 #include "schemes/scheme_data.hpp"
 #include "study/measure/timed_run.hpp"
 #include "study/measure/work_columns.hpp"
@@ -57,17 +58,16 @@ inline const std::string measures_cost = "cost", measures_orders = "orders", mea
 
 /// The cells of every row; what does not apply stays as it is here.
 struct StiffnessRow {
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   /// A number with its 95 % interval.
   struct Figure {
-    double value = none, low = none, high = none;
+    double value = no_value, low = no_value, high = no_value;
   };
   std::string problem, method, measure, stepping, parameter;
   std::int64_t points = 0;
   Figure step_exponent{};
   std::int64_t classical_order = 0;
   Figure nonstiff_order{};
-  double predicted_stiff_order = none;
+  double predicted_stiff_order = no_value;
   Figure stiff_order{};
   Figure crossing_cost{}, crossing_seconds{};
 };

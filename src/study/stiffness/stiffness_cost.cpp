@@ -7,6 +7,7 @@
 
 #include "analysis/fit/power_law.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
+#include "core/special_values.hpp"
 #include "schemes/derived_properties.hpp"
 #include "study/measure/error_meter.hpp"
 #include "study/measure/step_ladder.hpp"
@@ -16,15 +17,14 @@ namespace fw::study {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 /// For eigenvalues that are a whole range apart but for rounding.
 constexpr double range_slack = 1.02;
 
 /// The cheapest run found that reaches the target on one member, or why there is none.
 struct Found {
   bool reached = false;
-  double step = none, tolerance = none, error = none;
-  double largest_eigenvalue = none;
+  double step = no_value, tolerance = no_value, error = no_value;
+  double largest_eigenvalue = no_value;
   /// Factor between the work of this run and of the cheapest one known not to reach the target: how well the
   /// cost is known.
   double bracket = 1.0;
@@ -36,7 +36,7 @@ struct Found {
 /// Of the finite ones.
 double median(std::vector<double> samples) {
   std::erase_if(samples, [](double sample) { return !std::isfinite(sample); });
-  if (samples.empty()) return none;
+  if (samples.empty()) return no_value;
   std::sort(samples.begin(), samples.end());
   return samples[samples.size() / 2];
 }
@@ -179,7 +179,7 @@ class CostCase {
       if (std::isfinite(found.largest_eigenvalue)) most = std::max(most, found.largest_eigenvalue);
     }
     std::vector<double> eigenvalues, steps;
-    double last_product = none;  // of the stiffest one: families rise
+    double last_product = no_value;  // of the stiffest one: families rise
     for (std::size_t k = 0; k < found_.size(); ++k) {
       const double eigenvalue = found_[k].largest_eigenvalue;
       if (!found_[k].reached || !(eigenvalue * settings_.fit_range * range_slack >= most)) continue;
@@ -239,12 +239,13 @@ class CostCase {
       status.push_back(found.status);
       work.push_back(found.work);
       const double own = settings_.costs.of(found.work);
-      cost.push_back(found.reached ? own : none);
-      cost_spread.push_back(found.reached ? found.bracket * dearer.of(found.work) / own : none);
-      seconds.push_back(found.reached ? found.timing.minimum : none);
+      cost.push_back(found.reached ? own : no_value);
+      cost_spread.push_back(found.reached ? found.bracket * dearer.of(found.work) / own : no_value);
+      seconds.push_back(found.reached ? found.timing.minimum : no_value);
       std::vector<double> taken = found.timing.samples;
-      taken.resize(static_cast<std::size_t>(settings_.timing.repetitions), none);
-      seconds_spread.push_back(found.reached ? found.bracket * median(taken) / found.timing.minimum : none);
+      taken.resize(static_cast<std::size_t>(settings_.timing.repetitions), no_value);
+      seconds_spread.push_back(found.reached ? found.bracket * median(taken) / found.timing.minimum
+                                             : no_value);
       samples.insert(samples.end(), taken.begin(), taken.end());
     }
     std::vector<Column> columns = {{"parameter", "SI", parameter, {}, {{"name", family_.parameter}}},

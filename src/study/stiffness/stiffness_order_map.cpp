@@ -7,6 +7,7 @@
 #include "analysis/fit/order_fit.hpp"
 #include "analysis/theory/stiff_order.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
+#include "core/special_values.hpp"
 #include "study/measure/error_meter.hpp"
 #include "study/stiffness/stiffness_cases.hpp"
 
@@ -14,7 +15,6 @@ namespace fw::study {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 /// Local slopes in a fit differ from the finest ones by no more.
 constexpr double slope_tolerance = 0.1;
 /// Where local errors add up undamped, the steps must be this much fewer than those that would add up.
@@ -22,7 +22,7 @@ constexpr double accumulation_margin = 10.0;
 
 /// One member: errors at every step.
 struct MapRow {
-  double largest_eigenvalue = none;
+  double largest_eigenvalue = no_value;
   double floor = 0.0;
   std::vector<double> errors;
   std::vector<char> used;  ///< in one of the two fits
@@ -64,8 +64,8 @@ class OrderMap {
     for (const double step : steps_) {
       const Solution solution = run_once(*method_.integrator, ivp,
                                          FixedStep{.step = step, .allow_short_last_step = false}, context_);
-      const double error = solution.status.ok() ? meter.error(solution.state) : none;
-      row.errors.push_back(std::isfinite(error) ? error : none);
+      const double error = solution.status.ok() ? meter.error(solution.state) : no_value;
+      row.errors.push_back(std::isfinite(error) ? error : no_value);
     }
     return row;
   }
@@ -225,7 +225,7 @@ class OrderMap {
       for (std::size_t k = 0; k < steps_.size(); ++k) {
         errors.push_back(row.errors[k]);
         const bool has_slope = k > 0 && row.errors[k] > row.floor && row.errors[k - 1] > row.floor;
-        orders.push_back(has_slope ? std::log2(row.errors[k - 1] / row.errors[k]) : none);
+        orders.push_back(has_slope ? std::log2(row.errors[k - 1] / row.errors[k]) : no_value);
         products.push_back(steps_[k] * row.largest_eigenvalue);
         used.push_back(row.used[k]);
       }
@@ -248,7 +248,7 @@ class OrderMap {
   std::vector<MapRow> rows_;
   analysis::OrderFit nonstiff_, stiff_;
   analysis::StiffOrder prediction_;
-  double stiff_value_ = none;
+  double stiff_value_ = no_value;
 };
 
 }  // namespace

@@ -7,14 +7,13 @@
 
 #include "analysis/fit/power_law.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
+#include "core/special_values.hpp"
 #include "study/measure/error_meter.hpp"
 #include "study/stiffness/stiffness_cases.hpp"
 
 namespace fw::study {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The cheapest method of a class at every member.
 struct Cheapest {
@@ -24,7 +23,7 @@ struct Cheapest {
 
 Cheapest cheapest_of(const std::vector<const CaseResult*>& cases, const std::string& stepping,
                      const std::string& cost, std::size_t members) {
-  Cheapest best{std::vector<double>(members, none), std::vector<double>(members, none),
+  Cheapest best{std::vector<double>(members, no_value), std::vector<double>(members, no_value),
                 std::vector<std::string>(members)};
   for (const CaseResult* result : cases) {
     if (text_of(*result, "stepping") != stepping) continue;
@@ -57,9 +56,9 @@ std::string cross(CaseResult& overview, const std::vector<const CaseResult*>& ca
   const analysis::Crossing crossing =
       analysis::find_crossing(values, plain.cost, implicit.cost, plain.spread, implicit.spread);
   const std::string cell = "crossing_" + cost;
-  replace_cell(overview, cell, crossing.valid ? crossing.x : none);
-  replace_cell(overview, cell + "_low", crossing.valid ? crossing.low : none);
-  replace_cell(overview, cell + "_high", crossing.valid ? crossing.high : none);
+  replace_cell(overview, cell, crossing.valid ? crossing.x : no_value);
+  replace_cell(overview, cell + "_low", crossing.valid ? crossing.low : no_value);
+  replace_cell(overview, cell + "_high", crossing.valid ? crossing.high : no_value);
   if (!crossing.valid) return fmt::format("by {} {}", name, crossing.reason);
   return fmt::format("by {} implicit pays from {:.3g} [{:.3g}, {:.3g}]", name, crossing.x, crossing.low,
                      crossing.high);

@@ -11,6 +11,7 @@
 #include "analysis/fit/order_fit.hpp"
 #include "analysis/theory/linear_modes.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
+#include "core/special_values.hpp"
 #include "study/measure/error_meter.hpp"
 #include "study/measure/step_ladder.hpp"
 #include "study/measure/work_columns.hpp"
@@ -19,7 +20,6 @@ namespace fw::study {
 
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 /// Local slopes in the fit differ from the finest ones by no more.
 constexpr double slope_tolerance = 0.1;
 /// Evaluations per step count as constant where the largest is at most this much above the smallest.
@@ -44,7 +44,7 @@ struct Row {
   std::string problem, method, family, control;
   std::int64_t expected_order = 0;
   analysis::OrderFit fit{};
-  double smallest_error = none, evaluations_at_target = none, seconds_at_target = none;
+  double smallest_error = no_value, evaluations_at_target = no_value, seconds_at_target = no_value;
   std::int64_t points_on_front_evaluations = 0, points_on_front_seconds = 0;
 };
 
@@ -55,11 +55,11 @@ void declare(SummaryRow& a, const Row& row) {
   a("family", "", row.family, "as in `federwerk list methods`; empty of fronts");
   a("control", "", row.control, "`fixed` or `adaptive`; empty of fronts");
   a("expected_order", "1", row.expected_order, "by theory; 0: variable");
-  a("efficiency_order", "1", valid ? row.fit.order : none,
+  a("efficiency_order", "1", valid ? row.fit.order : no_value,
     "p of error ~ right-hand sides^-p; NaN where there is no fit");
-  a("efficiency_order_low", "1", valid ? row.fit.order_low : none, "lower end of the 95 % interval");
-  a("efficiency_order_high", "1", valid ? row.fit.order_high : none, "upper end");
-  a("correlation", "1", valid ? row.fit.correlation : none, "of the fit");
+  a("efficiency_order_low", "1", valid ? row.fit.order_low : no_value, "lower end of the 95 % interval");
+  a("efficiency_order_high", "1", valid ? row.fit.order_high : no_value, "upper end");
+  a("correlation", "1", valid ? row.fit.correlation : no_value, "of the fit");
   a("points", "1", static_cast<std::int64_t>(row.fit.points), "in the fit");
   a("smallest_error", "1", row.smallest_error, "of the ladder");
   a("rhs_evaluations_at_target", "1", row.evaluations_at_target,
@@ -187,7 +187,7 @@ class Ladder {
     std::vector<double> inverse_work, errors;
     for (const Rung& rung : rungs_) {
       inverse_work.push_back(1.0 / evaluations_of(rung));
-      errors.push_back(rung.error <= settings_.fit_error ? rung.error : none);
+      errors.push_back(rung.error <= settings_.fit_error ? rung.error : no_value);
     }
     fit_ = analysis::fit_order(inverse_work, errors, meter_->floor(), slope_tolerance);
     if (!fit_.valid) return conclude(fmt::format("no efficiency order: {}", fit_.reason));
@@ -243,8 +243,8 @@ class Ladder {
     std::vector<Work> work;
     const bool is_fixed = spec_.control == LadderControl::fixed;
     for (const Rung& rung : rungs_) {
-      step.push_back(is_fixed ? rung.control : none);
-      tolerance.push_back(is_fixed ? none : rung.control);
+      step.push_back(is_fixed ? rung.control : no_value);
+      tolerance.push_back(is_fixed ? no_value : rung.control);
       error.push_back(rung.error);
       work.push_back(rung.work);
       seconds.push_back(rung.timing.minimum);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "failing_systems.hpp"
 #include "integrators/implicit_problems.hpp"
@@ -13,17 +12,12 @@
 #include "oracles/sundials/right_hand_part.hpp"
 #include "problems/oscillators.hpp"
 #include "problems/stiff_equations.hpp"
+#include "reference_state.hpp"
 
 namespace fw::oracles {
 namespace {
 
 using integrators::random_network;
-
-Vector reference_state(const Ivp& ivp) {
-  const auto reference = analysis::certified_reference(ivp, ivp.t1);
-  EXPECT_TRUE(reference.status.ok()) << reference.status.describe();
-  return reference.states.at(0).rounded();
-}
 
 /// Each method with its default table; `constant` where it can also run with constant steps only.
 std::vector<std::unique_ptr<Integrator>> all_methods() {

@@ -17,7 +17,7 @@ using mechanics::MassSpringSystem;
 using mechanics::SpringParameter;
 using mechanics::SpringParameterGroup;
 
-constexpr AdaptiveStep tight{.relative_tolerance = 1e-9, .absolute_tolerance = 1e-11};
+constexpr AdaptiveStep tight_sensitivity{.relative_tolerance = 1e-9, .absolute_tolerance = 1e-11};
 
 /// A mass on a spring along x, fixed at the origin.
 struct Oscillator {
@@ -86,7 +86,8 @@ TEST(CvodeSensitivity, AgreesWithTheClosedFormOfTheDampedOscillator) {
   const Oscillator oscillator;
   const Eigen::Matrix<double, 2, 3> exact = oscillator.exact_sensitivity();
   for (const SensitivityOptions& options : all_options()) {
-    const auto result = solve_with_cvode_sensitivities(oscillator.ivp(), tight, one_of_each, options);
+    const auto result =
+        solve_with_cvode_sensitivities(oscillator.ivp(), tight_sensitivity, one_of_each, options);
     ASSERT_TRUE(result.solution.status.ok()) << result.solution.status.describe();
     ASSERT_EQ(result.sensitivity.rows(), 12);
     ASSERT_EQ(result.sensitivity.cols(), 3);
@@ -107,7 +108,7 @@ TEST(CvodeSensitivity, AgreesWithTheClosedFormOfTheDampedOscillator) {
 TEST(CvodeSensitivity, SeesAMissingFactorInTheClosedForm) {
   // Sensitivities are linear in ∂f/∂p: with −r in place of −k_s r they would be these, divided by k_s.
   const Oscillator oscillator;
-  const auto result = solve_with_cvode_sensitivities(oscillator.ivp(), tight, one_of_each);
+  const auto result = solve_with_cvode_sensitivities(oscillator.ivp(), tight_sensitivity, one_of_each);
   const double exact = oscillator.exact_sensitivity()(0, 2);
   EXPECT_GT(std::abs(result.sensitivity(3, 2) / oscillator.stiffness - exact), 0.5 * std::abs(exact));
 }
@@ -144,7 +145,7 @@ TEST(CvodeSensitivity, AgreesWithCentralDifferencesThatConvergeToIt) {
                                                           {SpringParameter::rest_length},
                                                           {SpringParameter::stiffness, {3}},
                                                           {SpringParameter::rest_length, {0, 5}}};
-    const auto result = solve_with_cvode_sensitivities(ivp, tight, parameters);
+    const auto result = solve_with_cvode_sensitivities(ivp, tight_sensitivity, parameters);
     ASSERT_TRUE(result.solution.status.ok()) << result.solution.status.describe();
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       const Vector s = result.sensitivity.col(static_cast<Index>(k));
@@ -176,7 +177,7 @@ TEST(CvodeSensitivity, OfAllSpringsIsTheSumOverSingleOnes) {
       static_cast<int>(dynamic_cast<const MassSpringSystem&>(*ivp.system).model().springs.size());
   std::vector<SpringParameterGroup> parameters = {{SpringParameter::rest_length}};
   for (int e = 0; e < springs; ++e) parameters.push_back({SpringParameter::rest_length, {e}});
-  const auto result = solve_with_cvode_sensitivities(ivp, tight, parameters);
+  const auto result = solve_with_cvode_sensitivities(ivp, tight_sensitivity, parameters);
   ASSERT_TRUE(result.solution.status.ok());
   const Vector all = result.sensitivity.col(0);
   EXPECT_LT((all - result.sensitivity.rightCols(springs).rowwise().sum()).lpNorm<Eigen::Infinity>(),
@@ -199,18 +200,21 @@ TEST(CvodeSensitivity, ControlsTheErrorOfTheSensitivities) {
 
 TEST(CvodeSensitivity, RefusesWhatItCannotDo) {
   const Oscillator oscillator;
-  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight, {}), InputError);
-  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight, {{SpringParameter::stiffness, {1}}}),
+  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight_sensitivity, {}), InputError);
+  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight_sensitivity,
+                                              {{SpringParameter::stiffness, {1}}}),
                InputError);
   SensitivityOptions adams;
   adams.formula = CvodeFormula::adams;
-  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight, one_of_each, adams), InputError);
-  EXPECT_THROW(solve_with_cvode_sensitivities(problems::harmonic_oscillator().ivp, tight, one_of_each),
+  EXPECT_THROW(solve_with_cvode_sensitivities(oscillator.ivp(), tight_sensitivity, one_of_each, adams),
                InputError);
+  EXPECT_THROW(
+      solve_with_cvode_sensitivities(problems::harmonic_oscillator().ivp, tight_sensitivity, one_of_each),
+      InputError);
 }
 
 TEST(CvodeSensitivity, GivesNoneWhereTheRunFails) {
-  AdaptiveStep control = tight;
+  AdaptiveStep control = tight_sensitivity;
   control.maximum_steps = 3;
   const auto result = solve_with_cvode_sensitivities(Oscillator{}.ivp(), control, one_of_each);
   EXPECT_EQ(result.solution.status.code, StatusCode::step_limit);

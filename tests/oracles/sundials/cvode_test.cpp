@@ -8,24 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "integrators/network.hpp"
 #include "ode/functor_system.hpp"
 #include "problems/oscillators.hpp"
 #include "problems/stiff_equations.hpp"
+#include "reference_state.hpp"
 
 namespace fw::oracles {
 namespace {
 
 using integrators::random_network;
-
-Vector reference_state(const Ivp& ivp) {
-  // Kinks of a rope cost a reference many steps: it need not be good to 1e-19 here.
-  const auto reference = analysis::certified_reference(ivp, ivp.t1);
-  EXPECT_TRUE(reference.status.ok()) << reference.status.describe();
-  return reference.states.at(0).rounded();
-}
 
 TEST(CvodeBdf, AgreesWithTheCertifiedReferenceOnRandomNetworksOfEveryLaw) {
   NullObserver observer;

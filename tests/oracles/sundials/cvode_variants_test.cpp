@@ -76,7 +76,7 @@ std::vector<Variant> variants() {
   return list;
 }
 
-constexpr AdaptiveStep tight{.relative_tolerance = 1e-9, .absolute_tolerance = 1e-11};
+constexpr AdaptiveStep tight_variants{.relative_tolerance = 1e-9, .absolute_tolerance = 1e-11};
 
 TEST(Cvode, AgreesWithTheCertifiedReferenceInEveryVariant) {
   NullObserver observer;
@@ -85,7 +85,7 @@ TEST(Cvode, AgreesWithTheCertifiedReferenceInEveryVariant) {
   ASSERT_TRUE(certified.status.ok()) << certified.status.describe();
   const Vector reference = certified.states.at(0).rounded();
   for (const Variant& variant : variants()) {
-    const Solution solution = variant.integrator->solve(ivp, tight, observer);
+    const Solution solution = variant.integrator->solve(ivp, tight_variants, observer);
     ASSERT_TRUE(solution.status.ok()) << variant.name << ": " << solution.status.describe();
     const Index n = ivp.y0.size() / 2;
     EXPECT_LT((solution.state - reference).head(n).lpNorm<Eigen::Infinity>(), 1e-7) << variant.name;
@@ -97,7 +97,7 @@ TEST(Cvode, CountsTheWorkOfEachVariant) {
   NullObserver observer;
   const Ivp ivp = random_network(36, {}, 1.0);
   for (const Variant& variant : variants()) {
-    const Work work = variant.integrator->solve(ivp, tight, observer).work;
+    const Work work = variant.integrator->solve(ivp, tight_variants, observer).work;
     const bool krylov = variant.name.find("spgmr") != std::string::npos;
     const bool fixed_point =
         variant.name.find("fixed point") != std::string::npos ||
@@ -121,9 +121,9 @@ TEST(Cvode, SolvesAStiffNetworkByKrylovIterationsWithFewOfThem) {
   for (double& stiffness : model.springs.stiffness) stiffness *= 1e3;
   for (double& damping : model.springs.damping) damping *= 1e2;
   ivp.system = std::make_shared<const mechanics::MassSpringSystem>(model);
-  const Solution direct = make_cvode_bdf()->solve(ivp, tight, observer);
+  const Solution direct = make_cvode_bdf()->solve(ivp, tight_variants, observer);
   const Solution krylov =
-      make_cvode_bdf({.linear_solver = CvodeLinearSolver::spgmr})->solve(ivp, tight, observer);
+      make_cvode_bdf({.linear_solver = CvodeLinearSolver::spgmr})->solve(ivp, tight_variants, observer);
   ASSERT_TRUE(direct.status.ok() && krylov.status.ok());
   EXPECT_LT((direct.state - krylov.state).head(ivp.y0.size() / 2).lpNorm<Eigen::Infinity>(), 1e-8);
   EXPECT_LT(krylov.work.linear_iterations, 12 * krylov.work.newton_iterations);
@@ -179,7 +179,7 @@ TEST(Cvode, ReportsNanOfTheFirstRightHandSide) {
   ivp.y0 = Vector{{1.0}};
   NullObserver observer;
   for (const Variant& variant : variants()) {
-    const Solution solution = variant.integrator->solve(ivp, tight, observer);
+    const Solution solution = variant.integrator->solve(ivp, tight_variants, observer);
     EXPECT_EQ(solution.status.code, StatusCode::non_finite) << variant.name;
     EXPECT_NE(solution.status.message.find("RHSFUNC"), std::string::npos) << solution.status.describe();
     EXPECT_EQ(solution.state, ivp.y0) << variant.name;
@@ -192,7 +192,7 @@ TEST(Cvode, StopsWhereTheRightHandSideBreaksDownInEveryVariant) {
   ivp.y0 = Vector{{1.0}};
   NullObserver observer;
   for (const Variant& variant : variants()) {
-    const Solution solution = variant.integrator->solve(ivp, tight, observer);
+    const Solution solution = variant.integrator->solve(ivp, tight_variants, observer);
     EXPECT_FALSE(solution.status.ok()) << variant.name;
     EXPECT_NE(solution.status.message.find("CVODE at t = 0."), std::string::npos)
         << variant.name << ": " << solution.status.describe();
@@ -209,7 +209,7 @@ TEST(Cvode, HandsOnWhatTheRightHandSideThrows) {
   NullObserver observer;
   for (const Variant& variant : variants()) {
     try {
-      variant.integrator->solve(ivp, tight, observer);
+      variant.integrator->solve(ivp, tight_variants, observer);
       ADD_FAILURE() << variant.name << ": the exception was lost";
     } catch (const InputError& error) {
       EXPECT_STREQ(error.what(), "no table beyond t = 0.25");
@@ -241,7 +241,7 @@ TEST(Cvode, ReportsAJacobianThatIsNotFinite) {
   ivp.y0 = Vector{{1.0, 2.0}};
   NullObserver observer;
   for (const CvodeLinearSolver solver : {CvodeLinearSolver::klu, CvodeLinearSolver::spgmr}) {
-    const Solution solution = make_cvode_bdf({.linear_solver = solver})->solve(ivp, tight, observer);
+    const Solution solution = make_cvode_bdf({.linear_solver = solver})->solve(ivp, tight_variants, observer);
     EXPECT_FALSE(solution.status.ok());
     EXPECT_NE(solution.status.message.find("CVODE at t = 0"), std::string::npos)
         << solution.status.describe();
@@ -256,13 +256,13 @@ TEST(Cvode, StopsAtItsLimitOfStepsAndForTheObserverInEveryVariant) {
   const Problem problem = problems::harmonic_oscillator();
   for (const Variant& variant : variants()) {
     NullObserver observer;
-    AdaptiveStep control = tight;
+    AdaptiveStep control = tight_variants;
     control.maximum_steps = 7;
     const Solution limited = variant.integrator->solve(problem.ivp, control, observer);
     EXPECT_EQ(limited.status.code, StatusCode::step_limit) << variant.name;
     EXPECT_EQ(limited.work.accepted_steps, 7u) << variant.name;
     Impatient impatient;
-    const Solution stopped = variant.integrator->solve(problem.ivp, tight, impatient);
+    const Solution stopped = variant.integrator->solve(problem.ivp, tight_variants, impatient);
     EXPECT_EQ(stopped.status.code, StatusCode::stopped_by_observer) << variant.name;
     EXPECT_EQ(stopped.work.accepted_steps, 3u) << variant.name;
   }

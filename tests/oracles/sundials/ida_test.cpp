@@ -4,34 +4,26 @@
 
 #include <cmath>
 
-#include "analysis/reference/reference_solution.hpp"
 #include "core/error.hpp"
 #include "failing_systems.hpp"
 #include "integrators/network.hpp"
 #include "oracles/sundials/ida_memory.hpp"
 #include "problems/oscillators.hpp"
 #include "problems/stiff_equations.hpp"
+#include "reference_state.hpp"
 
 namespace fw::oracles {
 namespace {
 
 using integrators::random_network;
 
-Vector reference_state(const Ivp& ivp) {
-  const auto reference = analysis::certified_reference(ivp, ivp.t1);
-  EXPECT_TRUE(reference.status.ok()) << reference.status.describe();
-  return reference.states.at(0).rounded();
-}
-
-AdaptiveStep tight() {
-  return {.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12};
-}
+constexpr AdaptiveStep tight_ida{.relative_tolerance = 1e-10, .absolute_tolerance = 1e-12};
 
 TEST(Ida, AgreesWithTheCertifiedReferenceOnRandomNetworks) {
   NullObserver observer;
   for (const bool damped : {true, false}) {
     const Ivp ivp = random_network(41, {.is_damped = damped}, 1.5);
-    const Solution solution = make_ida()->solve(ivp, tight(), observer);
+    const Solution solution = make_ida()->solve(ivp, tight_ida, observer);
     ASSERT_TRUE(solution.status.ok()) << solution.status.describe();
     EXPECT_EQ(solution.time, ivp.t1);
     const double error = (solution.state - reference_state(ivp)).lpNorm<Eigen::Infinity>();
@@ -74,7 +66,7 @@ TEST(Ida, InterpolatesBetweenItsSteps) {
     const Problem& problem_;
     double previous_ = 0.0;
   } observer(problem);
-  ASSERT_TRUE(make_ida()->solve(problem.ivp, tight(), observer).status.ok());
+  ASSERT_TRUE(make_ida()->solve(problem.ivp, tight_ida, observer).status.ok());
   EXPECT_LT(observer.largest, 1e-6);
   EXPECT_GT(observer.largest, 0.0);
 }

@@ -219,7 +219,7 @@ class HalfLine final : public SecondOrderSystem {
 struct NotANumber {
   double operator()() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
-struct Throws {
+struct ThrowsAtRest {
   double operator()() const { throw InputError("no force below x = 2"); }
 };
 
@@ -234,7 +234,8 @@ TEST(StaticEquilibrium, ReportsNanAndHandsOnWhatTheForceThrows) {
         << equilibrium.status.describe();
   }
   EXPECT_EQ(find_static_equilibrium(HalfLine<NotANumber>{}, bad).status.code, StatusCode::non_finite);
-  EXPECT_THROW(find_static_equilibrium(HalfLine<Throws>{}, good, 0.0, {.regularisation = 0.0}), InputError);
+  EXPECT_THROW(find_static_equilibrium(HalfLine<ThrowsAtRest>{}, good, 0.0, {.regularisation = 0.0}),
+               InputError);
 }
 
 TEST(StaticEquilibrium, RefusesBadInput) {
