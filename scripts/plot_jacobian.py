@@ -10,7 +10,7 @@ import numpy
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, SymLogNorm
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
-from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, new_figure, number
+from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, cell_edges, new_figure, number
 
 EPSILON = float(numpy.finfo(float).eps)
 ORDERS = {"forward": 1, "central": 2}
@@ -152,15 +152,9 @@ def draw_patterns(result):
     return figure
 
 
-def edges(values):
-    """Borders of cells around values on a logarithmic or linear axis."""
-    middle = 0.5 * (values[1:] + values[:-1])
-    return numpy.concatenate([[1.5 * values[0] - 0.5 * values[1]], middle, [1.5 * values[-1] - 0.5 * values[-2]]])
-
-
 def map_axes(result, case):
     step, compression = result.values("step", case), result.values("compression", case)
-    return numpy.exp(edges(numpy.log(step))), edges(compression)
+    return numpy.exp(cell_edges(numpy.log(step), 0.4)), cell_edges(compression, 0.05)
 
 
 def draw_limits(result, panel, case):
