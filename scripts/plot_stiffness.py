@@ -8,7 +8,7 @@ import plot_style  # first: it finds a Python with the libraries
 import numpy
 from matplotlib.colors import BoundaryNorm
 from matplotlib.lines import Line2D
-from plot_style import ALARM, PALETTE, QUIET, cell_edges, label, look, new_figure, number
+from plot_style import ALARM, PALETTE, QUIET, cell_edges, label, look, new_figure, number, parameter_label
 
 CLASSES = {"explicit": "-", "exponential": ":", "implicit": (0, (5, 2))}
 CHEAPEST = {"explicit": PALETTE[1], "implicit": PALETTE[0]}
@@ -28,7 +28,7 @@ def axis_of(result, case):
     """The varied parameter as it is drawn: its size, and a label that names it."""
     values = result.values("parameter", case)
     name = plot_style_text(case["parameter"].attrs["name"])
-    return numpy.abs(values), f"|{name}|" if (values < 0).any() else name
+    return numpy.abs(values), parameter_label(name, (values < 0).any())
 
 
 def plot_style_text(value):
@@ -87,7 +87,7 @@ def draw_cost(result, problem):
     spectrum.set_ylabel("quotient")
     spectrum.legend(loc="upper left")
     for panel in (steps, cost, seconds, spectrum):
-        panel.set_xlabel(f"{name} (SI)")
+        panel.set_xlabel(name)
     handles = [Line2D([], [], label=short(row["method"]), linewidth=1.3, markersize=4.5,
                       **(look(k) | {"linestyle": CLASSES[row["stepping"]]})) for k, row in enumerate(rows)]
     axes[0][2].legend(handles=handles, loc="upper left", borderaxespad=0, fontsize=9)

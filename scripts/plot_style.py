@@ -98,6 +98,19 @@ def label(quantity, unit):
     return quantity if unit in ("", "1", "SI") else f"{quantity} [{unit}]"
 
 
+UNITS = {"stiffness": "N/m", "mass": "kg", "damping": "N·s/m", "rest_length": "m", "length": "m", "gravity": "m/s²"}
+
+
+def parameter_label(path, absolute=False):
+    """An axis label for a parameter by its path: "generate.stiffness.structural" is "stiffness (structural) [N/m]"."""
+    parts = [part for part in path.split(".") if part not in ("generate", "parameters", "springs", "particles")
+             and not part.startswith("problem[")]
+    name = next((part for part in parts if part in UNITS), parts[-1] if parts else path)
+    others = [part.replace("_", " ") for part in parts if part != name]
+    shown = name.replace("_", " ") + (f" ({', '.join(others)})" if others else "")
+    return label(f"|{shown}|" if absolute else shown, UNITS.get(name, ""))
+
+
 def number(value):
     """A number as one would write it on a board: 0.5, 1e-05, 2.00001."""
     return f"{value:.6g}"

@@ -310,7 +310,7 @@ class LaterKinds(PlotTest):
         image = figures[0].axes[0].images[0].get_array()  # distance × step
         self.assertTrue(numpy.ma.getmaskarray(image)[5, 4])
         self.assertFalse(numpy.ma.getmaskarray(image)[4, 4])
-        self.assertIn("1 springs per step", [text.get_text() for text in figures[0].axes[0].texts])
+        self.assertIn("1 spring per step", [text.get_text() for text in figures[0].axes[0].texts])
         numpy.testing.assert_allclose(figures[0].axes[0].lines[1].get_ydata()[:3], [0, 0.5, 1.0])
 
     def test_a_field_has_a_panel_per_time_with_the_way_so_far(self):
