@@ -174,7 +174,7 @@ def line_over_steps(panel, steps, magnitudes, index, text):
 def reference_slopes(panel, powers):
     """A dashed line h^p below the lowest curve that has about that slope; none where no curve has it."""
     curves = [(numpy.asarray(line.get_xdata(), float), numpy.asarray(line.get_ydata(), float)) for line in panel.lines
-              if len(line.get_xdata()) > 1]
+              if len(line.get_xdata()) > 1 and line.get_linestyle() not in ("None", "none")]
     limits = panel.get_ylim()
     for power in powers:
         close = [(steps, values) for steps, values in curves
@@ -249,7 +249,7 @@ def draw_laws(result, problem, members):
         right.set_xlabel("step h [s]")
         reference_slopes(right, (1, 2, 4))
     left.set_xlabel("step h [s]")
-    reference_slopes(left, (1, 2, 4) if damped else (1, 2, 3, 4, 5))
+    reference_slopes(left, (1, 2, 4) if damped else (1, 2, 3, 4, 5, 6))
     for panel in (left,) if damped else (left, right):
         step_ticks(panel, every)
     side.set_axis_off()
