@@ -4,7 +4,7 @@ projection."""
 import numpy
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Polygon
-from plot_style import PALETTE, number
+from plot_style import EXACT, PALETTE, number
 from scene_shapes import SOLID, SOLID_EDGE, reach_of
 
 FRAMES = 6
@@ -52,8 +52,9 @@ def patches_of(shape, one, two, low, high):
 class Strip:
     """The frames of one trajectory, all with the same limits and one scale along the axes."""
 
-    def __init__(self, time, position, springs, obstacles, held):
+    def __init__(self, time, position, springs, obstacles, held, anchored=()):
         self.time, self.position, self.springs, self.held = time, position, springs, held
+        self.anchored = numpy.array([place for _, place in anchored]).reshape(-1, 3)
         self.frames = chosen_frames(time)
         everything = numpy.concatenate([position.reshape(-1, 3), reach_of(obstacles, position)])
         low, high = everything.min(axis=0), everything.max(axis=0)
@@ -86,6 +87,7 @@ class Strip:
                 axes.plot(*points.T, linestyle="none", marker="o", markersize=3, color=PALETTE[0], zorder=2)
             if len(self.held):
                 axes.plot(*points[self.held].T, linestyle="none", marker="s", markersize=4, color=PALETTE[1], zorder=3)
+            axes.plot(*seen(self.anchored).T, linestyle="none", marker="x", markersize=5, color=EXACT, zorder=4)
             axes.set(xlim=(self.low[0], self.high[0]), ylim=(self.low[1], self.high[1]))
             axes.set_aspect("equal")
             axes.set_axis_off()
@@ -93,8 +95,8 @@ class Strip:
         return self.time[self.frames]
 
 
-def note(held, obstacles):
+def note(held, obstacles, anchored=()):
     """What the marks of the strip mean."""
-    parts = ["squares: fixed"] if len(held) else []
+    parts = (["squares: fixed"] if len(held) else []) + (["crosses: anchors"] if len(anchored) else [])
     parts += [", ".join(dict.fromkeys(shape for shape, _, _ in obstacles)) + " in sand"] if obstacles else []
     return "; ".join(parts)

@@ -146,7 +146,8 @@ def draw_in_space(result, figure, spec, fixed, frames, curves, scale, explodes):
     position, time = result.values("trajectory/position")[:frames], result.values("trajectory/time")[:frames]
     found = obstacles(spec)
     springs = drawn_springs(spec, result.values("system/springs").astype(int).reshape(-1, 2), position.shape[1])
-    strip = Strip(time, position, springs, found, fixed)
+    tied = anchors(spec, position[0])
+    strip = Strip(time, position, springs, found, fixed, tied)
     rows, columns = strip.shape(WIDTH, STRIP * HEIGHT)
     outer = figure.add_gridspec(2, 1, height_ratios=[STRIP, 1 - STRIP])
     inner = outer[0].subgridspec(rows, columns)
@@ -154,7 +155,7 @@ def draw_in_space(result, figure, spec, fixed, frames, curves, scale, explodes):
     panel = figure.add_subplot(outer[1])
     for instant in instants:
         panel.axvline(instant, color=QUIET, linewidth=0.8, linestyle=":")
-    meaning = note(fixed, found)
+    meaning = note(fixed, found, tied)
     draw_curves(result, panel, "energy" + (f" ({meaning})" if meaning else ""), curves, "energy", scale, explodes)
     return panel
 
