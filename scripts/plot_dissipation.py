@@ -67,7 +67,7 @@ def method_legend(panel, curves, extra=()):
 def draw_errors(result, curves):
     figure, axes = new_figure(result, 16.5, 6.4, 1, 3, gridspec_kw={"width_ratios": [1, 1, 0.52]})
     for panel, name, title in ((axes[0][0], "damping_ratio", "numerical damping ratio |ξ|"),
-                               (axes[0][1], "period_error", "relative error of the period |T̄/T − 1|")):
+                               (axes[0][1], "period_error", r"relative error of the period $|\bar{T}/T - 1|$")):
         for curve in curves:
             signed_curve(panel, curve["frequency_step"], curve[name], curve[f"measured_{name}"], curve["look"])
         panel.set_title(title, loc="left", pad=40)
@@ -104,11 +104,21 @@ def draw_radius(result, curves):
     return figure
 
 
+def in_words(row):
+    """ "damps 62 % per period, period +3.2 %" from damping ratio ξ̄ = −ln|λ|/ω̄ and period error."""
+    per_period = numpy.expm1(-2 * numpy.pi * row["damping_ratio"])  # change of the amplitude
+    size = f"{number(float(f'{100 * abs(per_period):.2g}'))} % per period"
+    what = "no damping" if abs(per_period) < 5e-7 else f"damps {size}" if per_period < 0 else f"grows by {size}"
+    period = row["period_error"]
+    off = "" if not numpy.isfinite(period) else ", period exact" if abs(period) < 5e-7 else f", period {100 * period:+.2g} %"
+    return what + off
+
+
 def draw_motion(result, curves):
     """A panel per method: the exact oscillation and what the method makes of it."""
     columns = min(4, len(curves))
     rows = -(-len(curves) // columns)
-    figure, axes = new_figure(result, 4.1 * columns, 2.5 * rows + 0.9, rows, columns, sharex=True, sharey=True)
+    figure, axes = new_figure(result, 4.1 * columns, 2.7 * rows + 0.9, rows, columns, sharex=True, sharey=True)
     for panel in axes.flat[len(curves):]:
         panel.remove()
     for index, (panel, curve) in enumerate(zip(axes.flat, curves)):
@@ -117,9 +127,7 @@ def draw_motion(result, curves):
         panel.plot(curve["motion_time"], curve["motion_position"], color=curve["look"]["color"], linewidth=1.8)
         panel.set_ylim(-1.9 * size, 1.9 * size)
         row = curve["row"]
-        panel.set_title(row["method"], loc="left", fontsize=10.5)
-        panel.text(0.99, 0.03, f"ξ = {row['damping_ratio']:.2g}, T̄/T − 1 = {row['period_error']:.2g}",
-                   transform=panel.transAxes, ha="right", va="bottom", fontsize=8.5, color=QUIET)
+        panel.set_title(f"{row['method']}\n{in_words(row)}", loc="left", fontsize=10.5)
         if index + columns >= len(curves):
             panel.set_xlabel(label("time t", curve["units"]["motion_time"]))
             panel.tick_params(labelbottom=True)

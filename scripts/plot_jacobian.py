@@ -8,9 +8,9 @@ import sys
 import plot_style  # first: it finds a Python with the libraries
 import numpy
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, SymLogNorm
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
-from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, new_figure, number
+from plot_style import ALARM, EXACT, MARKERS, PALETTE, QUIET, cell_edges, new_figure, number
 
 EPSILON = float(numpy.finfo(float).eps)
 ORDERS = {"forward": 1, "central": 2}
@@ -152,15 +152,9 @@ def draw_patterns(result):
     return figure
 
 
-def edges(values):
-    """Borders of cells around values on a logarithmic or linear axis."""
-    middle = 0.5 * (values[1:] + values[:-1])
-    return numpy.concatenate([[1.5 * values[0] - 0.5 * values[1]], middle, [1.5 * values[-1] - 0.5 * values[-2]]])
-
-
 def map_axes(result, case):
     step, compression = result.values("step", case), result.values("compression", case)
-    return numpy.exp(edges(numpy.log(step))), edges(compression)
+    return numpy.exp(cell_edges(numpy.log(step), 0.4)), cell_edges(compression, 0.05)
 
 
 def draw_limits(result, panel, case):
@@ -212,6 +206,13 @@ def draw_definiteness(result):
     return figure
 
 
+def hatch_cells(panel, x, y, chosen):
+    """Hatches cells: red alone looks like a step of the colour bar to the colour-blind."""
+    for row, column in zip(*numpy.nonzero(chosen)):
+        panel.add_patch(Rectangle((x[column], y[row]), x[column + 1] - x[column], y[row + 1] - y[row], fill=False,
+                                  edgecolor="white", linewidth=0, hatch="////", zorder=1.5))
+
+
 def draw_iterations(result, subject, rows):
     """What Newton and conjugate gradients make of it: iterations, and where they fail."""
     quantities = {"newton_iterations": "Newton, LU", "newton_cg_iterations": "Newton, CG", "cg_iterations": "CG, one system"}
@@ -228,6 +229,7 @@ def draw_iterations(result, subject, rows):
             steps, compressions = map_axes(result, case)
             panel.pcolormesh(steps, compressions, numpy.where(value < 0, 1.0, numpy.nan), cmap=ListedColormap([ALARM]),
                              rasterized=True)
+            hatch_cells(panel, steps, compressions, value < 0)
             image = panel.pcolormesh(steps, compressions, numpy.ma.masked_less(value, 0), cmap="viridis", rasterized=True,
                                      norm=BoundaryNorm(bounds, 256))
             draw_limits(result, panel, case)
@@ -236,7 +238,7 @@ def draw_iterations(result, subject, rows):
             panel.set_title(f"{title}: {MODELS[row['variant']]}", loc="left", fontsize=11)
         figure.colorbar(image, ax=list(axes[:, column]), label="iterations", shrink=0.7, aspect=25)
     figure.suptitle(f"{result.title}\n{subject}: iterations of one implicit step")
-    axes[0][0].legend(handles=[Patch(color=ALARM, label="fails")] + axes[0][0].get_legend_handles_labels()[0],
+    axes[0][0].legend(handles=[Patch(facecolor=ALARM, edgecolor="white", hatch="////", label="fails")] + axes[0][0].get_legend_handles_labels()[0],
                       loc="upper left", fontsize=9, frameon=True, framealpha=0.9)
     return figure
 

@@ -48,7 +48,8 @@ def draw_fronts(result, rows, title):
         panel.set_ylim(-0.5, field.shape[1] - 0.5)
         panel.set_title(row["method"], loc="left", fontsize=10.5)
         at_once = row["first_step_velocity"] == row["farthest"]
-        rate = f"{number(round(row['springs_per_step'], 3))} springs per step"
+        rate = number(round(row["springs_per_step"], 3))
+        rate += " spring per step" if rate == "1" else " springs per step"
         panel.text(0.98, 0.03, "all masses in one step" if at_once else rate, transform=panel.transAxes,
                    ha="right", va="bottom", fontsize=9.5,
                    bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2})
@@ -109,7 +110,7 @@ def draw_profiles(result, rows):
         panel.plot(time, front, linewidth=1.3, markevery=max(1, time.size // 10), **style)
         off = 100 * (row["wave_speed"] / row["physical_wave_speed"] - 1)
         handles.append(plot_style.plt.Line2D([], [], linewidth=1.3, **style,
-                                             label=f"{row['method']}, h = {number(row['step'])} s: {off:+.1f} %"))
+                                             label=f"{row['method']}, h = {number(row['step'])} s: {round(off, 1) + 0.0:+.1f} %"))
         known = numpy.isfinite(front)
         longest, speed = max(longest, time[known].max()), row["physical_wave_speed"]
     panel.plot([0, longest], [0, speed * longest], color=EXACT, linestyle=(0, (5, 3)), linewidth=1.3)

@@ -15,7 +15,7 @@ def draw_field(axes, field):
     moving = speed > 0
     direction = field["dydt"][moving] / speed[moving, None]
     axes.quiver(field["y"][moving, 0], field["y"][moving, 1], direction[:, 0], direction[:, 1], angles="xy",
-                pivot="mid", scale=38, width=0.0022, color=QUIET, alpha=0.6, zorder=0)
+                pivot="mid", scale=34, width=0.003, color=QUIET, alpha=0.85, zorder=0)
 
 
 def draw(result):

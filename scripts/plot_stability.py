@@ -4,12 +4,14 @@ depend on a parameter, and the thresholds of oscillation and instability on x' =
 
 import math
 import sys
+import textwrap
 
 import plot_style  # first: it finds a Python with the libraries
 import numpy
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from plot_style import ALARM, EXACT, PALETTE, QUIET, label, look, new_figure, number
+from plot_style import ALARM, EXACT, PALETTE, QUIET, label, look, new_figure, number, parameter_label
+from result_file import text as text_of
 
 INSIDE = "#BFD9EC"
 STAR = "#F6CFB4"
@@ -177,6 +179,25 @@ def draw_limits(result, rows):
     return figure
 
 
+def draw_bands(panel, unlimited):
+    """Above the lines the methods that have no limit, below those that are stable at no step."""
+    low, high = panel.get_ylim()
+    span = max(high / low, 10.0) ** 0.28
+    for what, colour, at_top in (("no limit", INSIDE, True), ("unstable at every step", DIVERGES, False)):
+        if not unlimited[what]:
+            continue
+        names = "\n".join(textwrap.wrap(", ".join(unlimited[what]), 44))
+        edge, other = (high, high * span) if at_top else (low / span, low)
+        panel.axhspan(edge, other, color=colour, alpha=0.55, linewidth=0, zorder=0)
+        panel.annotate(f"{'↑ ' if at_top else ''}{what}: {names}", (0.5, numpy.sqrt(edge * other)),
+                       xycoords=("axes fraction", "data"), ha="center", va="center", fontsize=11)
+        low, high = min(low, edge), max(high, other)
+    panel.set_ylim(low, high)
+    if unlimited["not applicable"]:
+        panel.annotate("not applicable: " + ", ".join(unlimited["not applicable"]), (0.98, 0.02), xycoords="axes fraction",
+                       ha="right", va="bottom", fontsize=9.5, color=QUIET)
+
+
 def draw_laws(result, rows):
     problems = list(dict.fromkeys(row["problem"] for row in rows))
     methods = list(dict.fromkeys(row["method"] for row in rows))
@@ -184,7 +205,7 @@ def draw_laws(result, rows):
     seen = {}
     for panel, problem in zip(axes[0], problems):
         lowest, mine = math.inf, [row for row in rows if row["problem"] == problem]
-        unlimited = []
+        unlimited = {"no limit": [], "unstable at every step": [], "not applicable": []}
         for row in mine:
             case = result.case_of(row)
             x = numpy.abs(result.values("parameter", case))
@@ -193,9 +214,8 @@ def draw_laws(result, rows):
             usable = numpy.isfinite(observed) & (observed > 0)
             known = numpy.isfinite(predicted) & (predicted > 0)
             if not known.any():
-                unlimited.append(f"{short(row['method'])}: " + ("no limit" if numpy.isinf(predicted).all() else
-                                                               "unstable at every step" if (predicted == 0).all()
-                                                               else "not applicable"))
+                unlimited["no limit" if numpy.isinf(predicted).all() else "unstable at every step" if (predicted == 0).all()
+                          else "not applicable"].append(short(row["method"]))
                 continue
             panel.plot(x[known], predicted[known], color=style["color"], linewidth=1.3)
             panel.plot(x[usable], observed[usable], linestyle="none", markersize=6.5, **style)
@@ -212,12 +232,10 @@ def draw_laws(result, rows):
                 panel.annotate(f"slope {number(expected)}", (ends[0], line[0]), color=QUIET, fontsize=10,
                                xytext=(0, -16), textcoords="offset points", va="top")
         parameter = result.case_of(mine[0])["parameter"].attrs["name"]
-        panel.set_xlabel(f"|{parameter if isinstance(parameter, str) else parameter.decode()}|")
+        panel.set_xlabel(parameter_label(text_of(parameter), (result.values("parameter", result.case_of(mine[0])) < 0).any()))
         panel.set_ylabel(label("largest stable step h", "s"))
         panel.set_title(problem, loc="left")
-        if unlimited:
-            panel.annotate("\n".join(unlimited), (0.98, 0.98), xycoords="axes fraction", ha="right", va="top",
-                           fontsize=8.5, color=QUIET, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5})
+        draw_bands(panel, unlimited)
     handles = [Line2D([], [], markersize=6.5, linewidth=1.3, label=short(method), **style)
                for method, style in seen.items()]
     axes[0][-1].legend(handles=handles, loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0,

@@ -8,7 +8,7 @@ import plot_style  # first: it finds a Python with the libraries
 import numpy
 from matplotlib.colors import BoundaryNorm
 from matplotlib.lines import Line2D
-from plot_style import ALARM, PALETTE, QUIET, label, look, new_figure, number
+from plot_style import ALARM, PALETTE, QUIET, cell_edges, label, look, new_figure, number, parameter_label
 
 CLASSES = {"explicit": "-", "exponential": ":", "implicit": (0, (5, 2))}
 CHEAPEST = {"explicit": PALETTE[1], "implicit": PALETTE[0]}
@@ -28,7 +28,7 @@ def axis_of(result, case):
     """The varied parameter as it is drawn: its size, and a label that names it."""
     values = result.values("parameter", case)
     name = plot_style_text(case["parameter"].attrs["name"])
-    return numpy.abs(values), f"|{name}|" if (values < 0).any() else name
+    return numpy.abs(values), parameter_label(name, (values < 0).any())
 
 
 def plot_style_text(value):
@@ -56,7 +56,8 @@ def draw_cost(result, problem):
                          linestyle=CLASSES[row["stepping"]])
     stiffness, name = axis_of(result, whole)
     steps.loglog(stiffness, result.values("stiffness_index", whole) / 2, color=QUIET, linewidth=5, alpha=0.3)
-    steps.annotate("h|λ| = 2", (stiffness[-2], result.values("stiffness_index", whole)[-2] / 2), color=QUIET,
+    beside = max(0, stiffness.size - 2)
+    steps.annotate("h|λ| = 2", (stiffness[beside], result.values("stiffness_index", whole)[beside] / 2), color=QUIET,
                    xytext=(8, -18), textcoords="offset points", fontsize=10)
     steps.set_title(f"{problem}: steps for the target error", loc="left")
     steps.set_ylabel("steps, accepted and rejected")
@@ -86,7 +87,7 @@ def draw_cost(result, problem):
     spectrum.set_ylabel("quotient")
     spectrum.legend(loc="upper left")
     for panel in (steps, cost, seconds, spectrum):
-        panel.set_xlabel(f"{name} (SI)")
+        panel.set_xlabel(name)
     handles = [Line2D([], [], label=short(row["method"]), linewidth=1.3, markersize=4.5,
                       **(look(k) | {"linestyle": CLASSES[row["stepping"]]})) for k, row in enumerate(rows)]
     axes[0][2].legend(handles=handles, loc="upper left", borderaxespad=0, fontsize=9)
@@ -108,7 +109,8 @@ def order_text(row):
 
 def draw_orders(result, problem):
     rows = [row for row in rows_of(result, problem, "orders") if "local_order" in result.case_of(row)
-            and result.values("local_order", result.case_of(row)).size]
+            and min(result.values("local_order", result.case_of(row)).shape) > 0
+            and result.values("step", result.case_of(row)).size > 1]  # an order needs two steps
     if not rows:
         return None
     lines = -(-len(rows) // COLUMNS)
@@ -122,8 +124,7 @@ def draw_orders(result, problem):
         rank = numpy.argsort(eigenvalues)
         # A local order belongs between its two steps; rows are as high as their distance on the axis.
         edges = numpy.concatenate(([steps[0]], steps))[1:]
-        levels = numpy.sqrt(eigenvalues[rank][1:] * eigenvalues[rank][:-1])
-        levels = numpy.concatenate(([eigenvalues[rank][0] ** 2 / levels[0]], levels, [eigenvalues[rank][-1] ** 2 / levels[-1]]))
+        levels = numpy.exp(cell_edges(numpy.log(eigenvalues[rank]), 1.0))
         mesh = axis.pcolormesh(edges, levels, numpy.ma.clip(order[rank][:, 1:], -0.4, 8.4), cmap=colours, norm=norm)
         axis.set_xscale("log")
         axis.set_yscale("log")

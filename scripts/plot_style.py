@@ -5,6 +5,7 @@ a machine that scripts/bootstrap set up.
 """
 
 import argparse
+import math
 import os
 import pathlib
 import sys
@@ -12,7 +13,7 @@ import sys
 try:
     import h5py  # noqa: F401
     import matplotlib
-    import numpy  # noqa: F401
+    import numpy
 except ImportError as missing:
     SYSTEM_PYTHON = "/usr/bin/python3"
     if not sys.argv[0].endswith(".py") or os.environ.get("FEDERWERK_RESTARTED") or not os.path.exists(SYSTEM_PYTHON):
@@ -24,6 +25,7 @@ except ImportError as missing:
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+from figure_rules import name_hidden_curves, slides  # noqa: E402
 from result_file import ResultError, ResultFile  # noqa: E402
 
 # Okabe and Ito 2008: told apart with every kind of colour vision. Its yellow is too pale for lines on white.
@@ -53,6 +55,7 @@ plt.rcParams.update({
     "lines.markersize": 6,
     "figure.constrained_layout.use": True,
     "savefig.dpi": 160,
+    "figure.max_open_warning": 0,  # slides: a figure per panel
     "pdf.fonttype": 42,  # text stays text
 })
 
@@ -62,10 +65,50 @@ def look(index):
     return {"color": PALETTE[index % len(PALETTE)], "marker": MARKERS[index % len(MARKERS)]}
 
 
+def shade(index, count):
+    """Colour of the member number `index` of an ordered series of `count`, such as steps: the palette where it is long
+    enough, else from dark to light of viridis without its pale end, so that none has the colour of another."""
+    if count < len(PALETTE):
+        return PALETTE[index % len(PALETTE)]
+    return matplotlib.colormaps["viridis"](0.92 * index / max(1, count - 1))
+
+
+def power_of_ten(panel):
+    """Numbers below 0.001 on an axis become numbers around 1, and the power goes into its label: an offset text would
+    stand in the title."""
+    largest = max(abs(limit) for limit in panel.get_ylim())
+    if not 0 < largest < 1e-3 or panel.get_yscale() != "linear":
+        return
+    power = math.floor(math.log10(largest))
+    panel.yaxis.set_major_formatter(lambda value, _: f"{value / 10.0 ** power:g}")
+    panel.set_ylabel(f"{panel.get_ylabel()}  [10$^{{{power}}}$]")
+
+
+def cell_edges(values, width):
+    """Borders of cells around values: half-way between neighbours; a single value has a cell of this half width."""
+    if values.size == 1:
+        return numpy.array([values[0] - width, values[0] + width])
+    middle = 0.5 * (values[1:] + values[:-1])
+    return numpy.concatenate([[1.5 * values[0] - 0.5 * values[1]], middle, [1.5 * values[-1] - 0.5 * values[-2]]])
+
+
 def label(quantity, unit):
     """An axis label: "step h [s]"; a quantity without dimension, or of mixed ones ("SI"), has no brackets."""
     unit = unit.replace("*", "·").replace("^2", "²").replace("^3", "³")
     return quantity if unit in ("", "1", "SI") else f"{quantity} [{unit}]"
+
+
+UNITS = {"stiffness": "N/m", "mass": "kg", "damping": "N·s/m", "rest_length": "m", "length": "m", "gravity": "m/s²"}
+
+
+def parameter_label(path, absolute=False):
+    """An axis label for a parameter by its path: "generate.stiffness.structural" is "stiffness (structural) [N/m]"."""
+    parts = [part for part in path.split(".") if part not in ("generate", "parameters", "springs", "particles")
+             and not part.startswith("problem[")]
+    name = next((part for part in parts if part in UNITS), parts[-1] if parts else path)
+    others = [part.replace("_", " ") for part in parts if part != name]
+    shown = name.replace("_", " ") + (f" ({', '.join(others)})" if others else "")
+    return label(f"|{shown}|" if absolute else shown, UNITS.get(name, ""))
 
 
 def number(value):
@@ -80,7 +123,7 @@ def new_figure(result, width, height, rows=1, columns=1, **options):
     footer_height = 0.3 / height
     figure.get_layout_engine().set(rect=(0, footer_height, 1, 1 - footer_height), w_pad=0.1, h_pad=0.1)
     figure.text(8 / (72 * width), 6 / (72 * height), result.provenance(), fontsize=8.5,
-                color=ALARM if not result.complete or result.not_computed() else QUIET, va="bottom")
+                color=ALARM if result.warnings() else QUIET, va="bottom")
     return figure, axes
 
 
@@ -88,6 +131,7 @@ def save(figures, result, directory, formats=("png", "pdf")):
     """Writes each figure in these formats, named after the result file, and returns the paths of the first format."""
     written = []
     for index, figure in enumerate(figures, start=1):
+        name_hidden_curves(figure)
         stem = result.path.stem if len(figures) == 1 else f"{result.path.stem}-{index}"
         for extension in formats:
             path = directory / f"{stem}.{extension}"
@@ -107,6 +151,8 @@ def main(description, choose_drawing, arguments=None):
     parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="DIR", help="default: beside each file")
     parser.add_argument("--formats", default="png,pdf", metavar="A,B", help="png, pdf, svg; default: png,pdf")
+    parser.add_argument("--style", choices=("paper", "slide"), default="paper",
+                        help="slide: 16:9, a panel per slide, letters of 20 points; default: paper, all panels at once")
     options = parser.parse_args(arguments)
     formats = options.formats.split(",")
     if not set(formats) <= {"png", "pdf", "svg"}:
@@ -122,7 +168,10 @@ def main(description, choose_drawing, arguments=None):
                     continue
                 if missing:
                     print(f"{path}: not drawn, since they could not be computed: {', '.join(missing)}", file=sys.stderr)
-                figures = draw(result) if draw is not None else []
+                if draw is None:
+                    figures = []
+                else:
+                    figures = slides(draw, result) if options.style == "slide" else draw(result)
                 if not figures:
                     print(f'{path}: nothing to draw for kind "{result.kind}"')
                     continue

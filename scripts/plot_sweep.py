@@ -25,12 +25,10 @@ def quantities_of(result, columns):
             raise result.error(f'quantities names "{name}", which is no number in /summary')
     if wanted:
         return wanted
-    for name, values in columns.items():
-        if not name.startswith(PREFIX) and numeric(values) and values.dtype.kind == "f":
-            usable = values[numpy.isfinite(values)]
-            if len(usable) > 1 and usable.min() < usable.max():
-                return [name]
-    raise result.error("no number of the summary varies; name some as quantities = [...]")
+    numbers = {name: values[numpy.isfinite(values)] for name, values in columns.items()
+               if not name.startswith(PREFIX) and numeric(values) and values.dtype.kind == "f"}
+    varying = [name for name, usable in numbers.items() if usable.size > 1 and usable.min() < usable.max()]
+    return (varying or [name for name, usable in numbers.items() if usable.size])[:1]  # of a single case nothing varies
 
 
 def is_wide(values):
@@ -63,6 +61,8 @@ def draw(result):
     parameters = [name for name in columns if name.startswith(PREFIX)]
     parameter = next((name for name in parameters if numeric(columns[name])), parameters[0])
     quantities = quantities_of(result, columns)
+    if not quantities:
+        return []
     lines = series_of(result, columns, parameter)
     figure, axes = new_figure(result, 6.0 * len(quantities) + 2.6, 5.2, 1, len(quantities))
     for panel, quantity in zip(axes.flat, quantities):

@@ -1,6 +1,8 @@
 """Reads federwerk's result files (docs/results_schema.md). Reads only: every number is computed by federwerk."""
 
 import pathlib
+import shlex
+import tomllib
 
 import h5py
 import numpy
@@ -30,6 +32,7 @@ class ResultFile:
         self.kind = text(attributes.get("kind", ""))
         self.title = text(attributes.get("title", self.path.stem))
         self.complete = text(attributes.get("status", "complete")) == "complete"
+        self.quick = bool(attributes.get("quick", 0))
 
     def __enter__(self):
         return self
@@ -44,16 +47,48 @@ class ResultFile:
         if self.kind != kind:
             raise self.error(f'found kind "{self.kind}", expected "{kind}"')
 
+    def spec(self):
+        """The resolved input as a dictionary; empty where the file has none."""
+        try:
+            return tomllib.loads(text(self.file.attrs.get("spec", "")))
+        except tomllib.TOMLDecodeError as error:
+            raise self.error(f"the attribute spec is no TOML: {error}") from error
+
+    def how_it_ran(self):
+        """Of a trajectory: method and step or tolerances, as `federwerk simulate` was called; empty where unknown."""
+        try:
+            words = shlex.split(text(self.file.attrs.get("command_line", "")))
+        except ValueError:
+            return ""
+        given = {}
+        for word, following in zip(words, words[1:] + [""]):
+            name, equals, value = word.partition("=")
+            if name in ("--method", "--step", "--rtol", "--atol"):
+                given[name] = value if equals else following
+        parts = [given[name] if name == "--method" else f"{short} = {given[name]}{unit}"
+                 for name, short, unit in (("--method", "", ""), ("--step", "h", " s"), ("--rtol", "rtol", ""),
+                                           ("--atol", "atol", "")) if name in given]
+        return ", ".join(parts)
+
+    def warnings(self):
+        """What a reader of the picture must not miss, as short texts: coarse, incomplete, failed."""
+        found = ["QUICK, coarse"] if self.quick else []
+        if not self.complete:
+            found.append("STOPPED before its end" if self.kind == "trajectory" else "INCOMPLETE: cases are missing")
+        failed = len(self.not_computed())
+        if failed:
+            found.append(f"{failed} case{'s' if failed > 1 else ''} could not be computed")
+        return found
+
     def provenance(self):
-        """One line: title, commit, date."""
+        """One line: file, how a trajectory ran, commit, date. The title stands above the picture."""
         attributes = self.file.attrs
         commit = text(attributes.get("git_commit", "unknown"))[:10]
         dirty = " + uncommitted changes" if bool(attributes.get("git_dirty", False)) else ""
         created = text(attributes.get("created", "unknown date"))[:10]
-        partial = "" if self.complete else " · INCOMPLETE: cases are missing"
-        failed = len(self.not_computed())
-        partial += f" · {failed} case{'s' if failed > 1 else ''} could not be computed" if failed else ""
-        return f"{self.title} · federwerk {commit}{dirty} · {created}{partial}"
+        how = self.how_it_ran() if self.kind == "trajectory" else ""
+        parts = [self.path.name, how, f"federwerk {commit}{dirty}", created, *self.warnings()]
+        return " · ".join(part for part in parts if part)
 
     def dataset(self, name, group=None):
         parent = self.file if group is None else group

@@ -3,7 +3,7 @@
 import math
 
 import numpy
-from plot_style import EXACT, MARKERS, PALETTE, number
+from plot_style import EXACT, MARKERS, number, shade
 
 MOST_MARKERS = 60  # a curve with more points is drawn without markers
 MOST_PANELS = 9
@@ -74,7 +74,7 @@ def style_of_steps(cases):
     """One colour and marker per step."""
     for index, case in enumerate(cases):
         few = len(case["time"]) <= MOST_MARKERS
-        yield {"color": PALETTE[index % (len(PALETTE) - 1)], "marker": MARKERS[index % len(MARKERS)] if few else "",
+        yield {"color": shade(index, len(cases)), "marker": MARKERS[index % len(MARKERS)] if few else "",
                "linewidth": 1.6, "markersize": 5, "zorder": 3}
 
 

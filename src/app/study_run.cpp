@@ -33,6 +33,7 @@ void count(const study::CaseResult& result, Tally& tally) {
   tally.holds += result.verdict == Verdict::holds;
   tally.fails += result.verdict == Verdict::fails;
   tally.not_applicable += result.verdict == Verdict::not_applicable;
+  tally.done += result.verdict == Verdict::done;
   if (result.verdict == Verdict::fails)
     tally.failures.push_back(fmt::format("{}: {}", result.id, result.reason));
 }
@@ -92,8 +93,8 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   for (const study::CaseResult& finished : result.cases) count(finished, tally);
   store.write(run.command_line, result);
   tally.complete = result.complete;
-  fmt::print("{}: {} hold, {} fail, {} not applicable{}\n\n", planned.output.string(), tally.holds,
-             tally.fails, tally.not_applicable,
+  fmt::print("{}: {} hold, {} fail, {} not applicable{}{}\n\n", planned.output.string(), tally.holds,
+             tally.fails, tally.not_applicable, tally.done > 0 ? fmt::format(", {} done", tally.done) : "",
              tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
   std::fflush(stdout);
   return tally;
@@ -101,7 +102,7 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
 
 void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<Tally>& tallies) {
   using Align = text::TextTable::Align;
-  std::vector<std::string> names, cases, holds, fails, not_applicable, kept, seconds, verdicts;
+  std::vector<std::string> names, cases, holds, fails, not_applicable, ran, kept, seconds, verdicts;
   for (std::size_t k = 0; k < tallies.size(); ++k) {
     const Tally& tally = tallies[k];
     names.push_back(studies[k].output.string());
@@ -109,11 +110,13 @@ void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<T
     holds.push_back(fmt::format("{}", tally.holds));
     fails.push_back(fmt::format("{}", tally.fails));
     not_applicable.push_back(fmt::format("{}", tally.not_applicable));
+    ran.push_back(fmt::format("{}", tally.done));
     kept.push_back(fmt::format("{}", tally.kept));
     seconds.push_back(fmt::format("{:.1f}", tally.seconds));
     verdicts.push_back(tally.fails > 0   ? "fails"
                        : !tally.complete ? "incomplete"
                        : tally.holds > 0 ? "holds"
+                       : tally.done > 0  ? "done"
                                          : "not applicable");
   }
   text::TextTable table;
@@ -122,6 +125,7 @@ void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<T
   table.add_column("hold", Align::right, holds);
   table.add_column("fail", Align::right, fails);
   table.add_column("not applicable", Align::right, not_applicable);
+  table.add_column("done", Align::right, ran);
   table.add_column("kept", Align::right, kept);
   table.add_column("time [s]", Align::right, seconds);
   table.add_column("verdict", Align::left, verdicts);

@@ -32,13 +32,13 @@ struct StudyRunOptions {
 
 /// How the cases of a study ended.
 struct Tally {
-  std::size_t holds = 0, fails = 0, not_applicable = 0, kept = 0;
+  std::size_t holds = 0, fails = 0, not_applicable = 0, done = 0, kept = 0;
   std::size_t not_computed = 0;         ///< of those that fail: exceptions, crashes, time limits
   std::vector<std::string> failures{};  ///< one line per case that fails
   bool complete = true;
   double seconds = 0.0;
 
-  std::size_t cases() const { return holds + fails + not_applicable; }
+  std::size_t cases() const { return holds + fails + not_applicable + done; }
 };
 
 /// Runs a study with a progress bar and one line per finished case, and writes its result file.

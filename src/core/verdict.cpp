@@ -8,6 +8,8 @@ std::string_view to_string(Verdict verdict) {
       return "holds";
     case Verdict::fails:
       return "fails";
+    case Verdict::done:
+      return "done";
     case Verdict::not_applicable:
       break;
   }

@@ -8,10 +8,11 @@ namespace fw {
 enum class Verdict {
   holds,
   fails,
-  not_applicable,  ///< nothing is predicted or claimed, or the question has no meaning here
+  not_applicable,  ///< the question has no meaning here, or cannot be decided: the reason says why
+  done,            ///< computed to the end, and nothing was predicted or claimed
 };
 
-/// "holds", "fails", "not applicable".
+/// "holds", "fails", "not applicable", "done".
 std::string_view to_string(Verdict verdict);
 
 }  // namespace fw

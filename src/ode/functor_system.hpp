@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/error.hpp"
 #include "ode/complex_step.hpp"
 #include "ode/first_order_jacobian.hpp"
+#include "ode/not_applicable.hpp"
 #include "ode/ode_system.hpp"
 
 namespace fw {
@@ -120,7 +120,7 @@ class FunctorSecondOrderSystem final : public OdeSystem, public SecondOrderSyste
   void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
                  SparseMatrix& K) const override {
     if (model != TangentModel::exact) {
-      throw InputError(
+      throw NotApplicable(
           "this system has no spring elements: its tangent stiffness is available as \"exact\" only");
     }
     const Index n = mass_.size();

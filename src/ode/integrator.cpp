@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw {
 
@@ -31,7 +32,7 @@ Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer&
     throw InputError(fmt::format("end time: found {}, expected a finite number > {}", ivp.t1, ivp.t0));
   }
   if (const std::string why = why_not_applicable(info(), *ivp.system); !why.empty()) {
-    throw InputError(fmt::format("method \"{}\": {}", info().name, why));
+    throw NotApplicable(fmt::format("method \"{}\": {}", info().name, why));
   }
   const auto start = std::chrono::steady_clock::now();
   Solution solution = do_solve(ivp, control, observer, options);

@@ -107,7 +107,7 @@ void write_summary(hid_t file, const std::vector<CaseResult>& cases) {
 }
 
 Verdict verdict_of(const std::string& text) {
-  for (const Verdict verdict : {Verdict::holds, Verdict::fails}) {
+  for (const Verdict verdict : {Verdict::holds, Verdict::fails, Verdict::done}) {
     if (text == to_string(verdict)) return verdict;
   }
   return Verdict::not_applicable;

@@ -37,6 +37,8 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   line("compiler", text_of(attributes, "compiler"));
   line("processor", text_of(attributes, "cpu"));
   line("seed", fmt::format("{}", integer_of(attributes, "seed", 0)));
+  // Its numbers are those of a coarser study than the title tells of.
+  if (integer_of(attributes, "quick", 0) != 0) line("quick", "yes: shrunk by the [quick] section");
   return out;
 }
 
@@ -91,9 +93,10 @@ std::string words(const StudySummary& summary, const std::vector<std::string>& w
   if (cases == 0) return "\nno finished cases\n";
   const std::string more =
       left_out > 0 ? fmt::format("({} more columns are in the file; --json shows them)\n", left_out) : "";
-  return fmt::format("\n{}{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable\n", table.text(), more,
+  const std::string done = summary.verdicts[3] > 0 ? fmt::format(", {} done", summary.verdicts[3]) : "";
+  return fmt::format("\n{}{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable{}\n", table.text(), more,
                      cases, cases == 1 ? "" : "s", summary.verdicts[0], summary.verdicts[0] == 1 ? "s" : "",
-                     summary.verdicts[1], summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2]);
+                     summary.verdicts[1], summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2], done);
 }
 
 std::string words(const TrajectorySummary& summary, const std::vector<std::string>& wanted,
@@ -163,7 +166,8 @@ void write_json(text::JsonWriter& json, const StudySummary& summary) {
   json.end_object().key("verdicts").begin_object();
   json.key("holds").value(summary.verdicts[0]);
   json.key("fails").value(summary.verdicts[1]);
-  json.key("not applicable").value(summary.verdicts[2]).end_object();
+  json.key("not applicable").value(summary.verdicts[2]);
+  json.key("done").value(summary.verdicts[3]).end_object();
 }
 
 void write_json(text::JsonWriter& json, const TrajectorySummary& summary) {

@@ -25,6 +25,7 @@ ShowContent read_show_content(const std::filesystem::path& path) {
       if (text == "holds") ++summary.verdicts[0];
       if (text == "fails") ++summary.verdicts[1];
       if (text == "not applicable") ++summary.verdicts[2];
+      if (text == "done") ++summary.verdicts[3];
     }
   }
   return summary;

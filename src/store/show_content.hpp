@@ -14,7 +14,7 @@ namespace fw::store {
 struct StudySummary {
   Attributes attributes;  ///< of the root
   std::vector<record::Column> columns;
-  std::array<std::int64_t, 3> verdicts{};  ///< holds, fails, not applicable
+  std::array<std::int64_t, 4> verdicts{};  ///< holds, fails, not applicable, done
 };
 
 /// What `show` says about a file, read but not yet put into words.

@@ -143,7 +143,7 @@ CaseResult decode(std::string_view bytes) {
   in.read(result.parameters);
   in.read(verdict);
   in.read(result.reason);
-  if (verdict > static_cast<std::uint8_t>(Verdict::not_applicable)) {
+  if (verdict > static_cast<std::uint8_t>(Verdict::done)) {
     throw std::runtime_error(
         fmt::format("corrupt message from a worker: found verdict {}, expected at most {}", verdict,
                     static_cast<int>(Verdict::not_applicable)));

@@ -42,6 +42,9 @@ struct PlannedCase {
   /// Its seconds are results: it never runs beside another case, and on one processor.
   bool is_timed = false;
   std::vector<SummaryCell> parameters{};  ///< those of its result
+  /// Cells of its row that are known before it runs, name and value: problem, method and the like. The row of
+  /// a case that could not be computed has them, so that it says what failed.
+  std::vector<std::pair<std::string, CellValue>> known{};
 };
 
 /// A study that has been read and checked completely, ready to run.

@@ -68,13 +68,21 @@ std::string row_mismatch(const std::vector<SummaryColumn>& columns, const std::v
   return fmt::format("found {} cells, expected {}", row.size(), columns.size());
 }
 
-std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns) {
+std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns,
+                                     const std::vector<std::pair<std::string, CellValue>>& known) {
   std::vector<SummaryCell> row;
   for (const SummaryColumn& column : columns) {
     CellValue nothing = std::numeric_limits<double>::quiet_NaN();
     if (column.type == CellType::integer) nothing = missing_integer;
     if (column.type == CellType::text) nothing = std::string();
     row.push_back({column.name, column.unit, std::move(nothing)});
+  }
+  for (const auto& [name, value] : known) {
+    SummaryCell& cell = named(row, "that could not be computed", name);
+    if (cell.value.index() != value.index())
+      throw std::logic_error(
+          fmt::format("\"{}\" of a planned case has another type than the kind declares", name));
+    cell.value = value;
   }
   return row;
 }

@@ -75,8 +75,11 @@ void replace_cell(CaseResult& result, std::string_view name, CellValue value);
 /// does not.
 std::string row_mismatch(const std::vector<SummaryColumn>& columns, const std::vector<SummaryCell>& row);
 
-/// The row of a case that could not be computed: NaN, `missing_integer`, empty texts.
-std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns);
+/// The row of a case that could not be computed: the cells that are known all the same (name and value), NaN,
+/// `missing_integer` and empty texts for the others. A known cell has to be a column of the same type; throws
+/// std::logic_error where it is none.
+std::vector<SummaryCell> missing_row(const std::vector<SummaryColumn>& columns,
+                                     const std::vector<std::pair<std::string, CellValue>>& known);
 
 /// The result of a study: everything a result file holds but its provenance.
 struct StudyResult {

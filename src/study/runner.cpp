@@ -16,6 +16,7 @@
 
 #include "core/error.hpp"
 #include "linalg/petsc_running.hpp"
+#include "ode/not_applicable.hpp"
 #include "study/case_message.hpp"
 #include "system/sha256.hpp"
 #include "system/worker_process.hpp"
@@ -31,7 +32,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// The first letter of a worker's answer.
-constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i';
+constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i', is_not_applicable = 'n';
 
 /// Runs a case in the worker; whatever happens is an answer.
 std::string answer_of(const PlannedCase& planned, const RunContext& context) {
@@ -39,6 +40,8 @@ std::string answer_of(const PlannedCase& planned, const RunContext& context) {
     return is_result + encode(planned.run(context));
   } catch (const Interrupted&) {
     return std::string(1, is_interrupted);
+  } catch (const NotApplicable& error) {
+    return is_not_applicable + std::string(error.what());
   } catch (const std::bad_alloc&) {
     return is_failure + std::string("out of memory");
   } catch (const std::exception& error) {
@@ -186,6 +189,7 @@ class Run {
   void take(std::size_t index, const std::string& answer, double seconds) {
     if (answer.empty() || answer.front() == is_interrupted) return;
     if (answer.front() == is_failure) return fail(index, answer.substr(1), seconds);
+    if (answer.front() == is_not_applicable) return leave_out(index, answer.substr(1), seconds);
     CaseResult result = decode(std::string_view(answer).substr(1));
     if (const std::string wrong = row_mismatch(plan_.summary, result.summary); !wrong.empty()) {
       return fail(index, "its row of the summary is not the one of its kind: " + wrong, seconds);
@@ -198,14 +202,24 @@ class Run {
   }
 
   /// A case that could not be computed has no key: it is tried again next time, when the reason may be gone.
-  void fail(std::size_t index, std::string reason, double seconds) {
+  CaseResult without_numbers(std::size_t index, Verdict verdict, std::string reason) const {
     CaseResult result;
     result.id = plan_.cases[index].id;
     result.parameters = plan_.cases[index].parameters;
-    result.summary = missing_row(plan_.summary);
-    result.verdict = Verdict::fails;
+    result.summary = missing_row(plan_.summary, plan_.cases[index].known);
+    result.verdict = verdict;
     result.reason = std::move(reason);
-    finish(index, std::move(result), {.computed = false, .seconds = seconds});
+    return result;
+  }
+
+  void fail(std::size_t index, std::string reason, double seconds) {
+    finish(index, without_numbers(index, Verdict::fails, std::move(reason)),
+           {.computed = false, .seconds = seconds});
+  }
+
+  /// The system lacks what the method needs: no finding, and no failure of the program either.
+  void leave_out(std::size_t index, std::string reason, double seconds) {
+    finish(index, without_numbers(index, Verdict::not_applicable, std::move(reason)), {.seconds = seconds});
   }
 
   struct Outcome {

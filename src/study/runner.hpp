@@ -37,7 +37,8 @@ struct RunOptions {
 
 /// Runs the cases of a plan in worker processes, `jobs` at a time, and keeps each in the archive as soon as
 /// it is finished; timed cases come last, one at a time and on one processor. A case that throws, crashes or
-/// runs past its time limit fails with the reason and is not kept; the others go on. The result does not
+/// runs past its time limit fails with the reason and is not kept, one that throws NotApplicable is not
+/// applicable with its reason; the others go on. The row of either names what is known of the case. The result does not
 /// depend on `jobs`, timings aside. `waiting` and `finished` are called by the calling thread. After an
 /// interrupt the result is incomplete. Throws SystemError if the archive cannot keep a case or no worker can
 /// be started.

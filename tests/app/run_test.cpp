@@ -107,7 +107,7 @@ TEST_F(Run, AnExplosionIsAPictureButNoSuccess) {
   const ProcessResult result = run_study("r");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   inspect(
-      "assert list(f['summary/verdict'][()]) == [b'not applicable', b'holds']\n"
+      "assert list(f['summary/verdict'][()]) == [b'not applicable', b'done']\n"
       "assert list(f['summary/status'][()]) == [b'blow_up', b'success']\n"
       "assert b'grows by the factor' in f['summary/reason'][0]\n",
       {file("r/s.h5")});

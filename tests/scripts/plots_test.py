@@ -59,15 +59,26 @@ class EveryPlot(PlotTest):
                              for extension in ("png", "pdf")])
         self.assertEqual(pictures[0], pictures[1])
 
-    def test_names_study_commit_and_date_in_its_footer(self):
+    def test_names_file_commit_and_date_in_its_footer_and_the_study_above(self):
         for kind, module in (("convergence", plot_convergence), ("trajectory", plot_trajectory),
                              ("slope_field", plot_slope_field), ("spiral", plot_spiral)):
             with self.subTest(kind):
                 figure, = self.draw(module, self.write(kind))
                 footer = [text.get_text() for text in figure.texts if "federwerk" in text.get_text()]
                 self.assertEqual(len(footer), 1)
-                for part in (figure._suptitle.get_text(), "0123456789", "uncommitted changes", "2026-01-31"):
+                for part in (f"{kind}.h5", "0123456789", "uncommitted changes", "2026-01-31"):
                     self.assertIn(part, footer[0])
+                self.assertNotIn("QUICK", footer[0])
+                self.assertGreater(len(figure._suptitle.get_text()), 5)
+
+    def test_says_in_the_footer_that_a_result_is_quick(self):
+        path = self.write("convergence")
+        with h5py.File(path, "r+") as file:
+            file.attrs["quick"] = 1
+        figure, = self.draw(plot_convergence, path)
+        footer, = [text for text in figure.texts if "federwerk" in text.get_text()]
+        self.assertIn("QUICK, coarse", footer.get_text())
+        self.assertEqual(footer.get_color(), plot_style.ALARM)
 
     def test_says_in_the_footer_that_a_result_is_incomplete(self):
         path = self.write("convergence")

@@ -195,6 +195,21 @@ class Stability(PlotTest):
         self.assertIn("slope -1", [text.get_text() for text in laws.axes[0].texts])
 
 
+    def test_laws_name_the_methods_without_a_line_in_bands(self):
+        with h5py.File(self.path, "r+") as file:
+            case = next(case for name, case in file["cases"].items() if "parameter" in case
+                        and numpy.isfinite(case["predicted_limit"][:]).all())
+            for column in ("predicted_limit", "observed_limit"):
+                case[column][:] = numpy.inf
+        laws = self.draw(plot_stability, self.path)[-1]
+        self.assertTrue(any(text.get_text().startswith("↑ no limit: ") for text in laws.axes[0].texts))
+
+    def test_parameters_are_named_with_their_units(self):
+        for path, expected in (("generate.stiffness.structural", "stiffness (structural) [N/m]"),
+                               ("problem[0].parameters.mass", "mass [kg]"), ("count", "count")):
+            self.assertEqual(plot_style.parameter_label(path), expected)
+
+
 class Verification(PlotTest):
     def make(self):
         path = self.folder / "verify.h5"

@@ -93,7 +93,7 @@ assert a['attributes']['format_version'] == 1 and a['attributes']['seed'] == 42
 assert [r['method'] for r in a['summary']] == ['rk0', 'rk1', 'rk2', 'rk3']
 assert a['summary'][1]['order'] is None and a['summary'][2]['order'] == 6.0
 assert a['summary'][3]['rhs_evaluations'] == 103 and a['units']['seconds'] == 's'
-assert a['verdicts'] == {'holds': 2, 'fails': 1, 'not applicable': 1}
+assert a['verdicts'] == {'holds': 2, 'fails': 1, 'not applicable': 1, 'done': 0}
 print('fine')
 )",
                        {(scratch / "a.json").string()}),

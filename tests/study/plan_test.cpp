@@ -29,6 +29,11 @@ TEST(Plan, OfTheResolvedSpecificationHasTheSameCasesForEveryStudyOfTheProject) {
       EXPECT_EQ(again.cases[k].id, plan.cases[k].id);
       EXPECT_EQ(again.cases[k].identity, plan.cases[k].identity);
     }
+    // Each names what it is of, also where it cannot be computed; throws where a name or type is not the kind's.
+    for (const PlannedCase& planned : plan.cases) {
+      EXPECT_FALSE(planned.known.empty()) << planned.id;
+      EXPECT_NO_THROW(missing_row(plan.summary, planned.known)) << planned.id;
+    }
     EXPECT_EQ(again.spec, plan.spec);
   }
   EXPECT_GE(studies, 40u);

@@ -16,6 +16,7 @@
 
 #include "core/error.hpp"
 #include "memory_archive.hpp"
+#include "ode/not_applicable.hpp"
 #include "study/case_message.hpp"
 
 namespace fw::study {
@@ -101,6 +102,30 @@ TEST(RunPlan, TurnsAnExceptionIntoAFailedCaseAndGoesOn) {
   EXPECT_TRUE(std::isnan(std::get<double>(result.cases[1].summary[0].value)));
   EXPECT_EQ(std::get<std::int64_t>(result.cases[1].summary[1].value), missing_integer);
   EXPECT_EQ(archive.size(), 2u);  // the failed one is tried again next time
+}
+
+TEST(RunPlan, NamesWhatIsKnownInTheRowOfACaseThatCouldNotBeComputed) {
+  MemoryArchive archive;
+  Plan plan = three_cases([] { throw std::runtime_error("broken on purpose"); });
+  plan.cases[1].known = {{"count", std::int64_t{7}}};
+  const StudyResult result = run_plan(plan, archive, {});
+  EXPECT_TRUE(std::isnan(std::get<double>(result.cases[1].summary[0].value)));
+  EXPECT_EQ(std::get<std::int64_t>(result.cases[1].summary[1].value), 7);
+}
+
+TEST(RunPlan, IsNotApplicableWhereTheSystemLacksWhatTheMethodNeeds) {
+  MemoryArchive archive;
+  Plan plan = three_cases([] { throw NotApplicable("the method needs springs"); });
+  plan.cases[1].known = {{"count", std::int64_t{7}}};
+  RunOptions options;
+  std::vector<bool> computed;
+  options.finished = [&](const CaseReport& report) { computed.push_back(report.computed); };
+  const StudyResult result = run_plan(plan, archive, options);
+  EXPECT_TRUE(result.complete);
+  EXPECT_EQ(result.cases[1].verdict, Verdict::not_applicable);
+  EXPECT_EQ(result.cases[1].reason, "the method needs springs");
+  EXPECT_EQ(std::get<std::int64_t>(result.cases[1].summary[1].value), 7);
+  EXPECT_EQ(computed, std::vector<bool>({true, true, true})) << "no failure of the program";
 }
 
 TEST(RunPlan, FailsACaseWhoseRowIsNotTheDeclaredOneWhenItReturns) {

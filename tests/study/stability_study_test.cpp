@@ -134,6 +134,20 @@ TEST(StabilityStudy, ReportsNonlinearProblemsWithoutAVerdict) {
   EXPECT_NEAR(figure(result, "ratio"), 1.0, 0.4);
 }
 
+TEST(StabilityStudy, SaysThatTheLinearPartHasLostTheSpringsThatAMethodNeeds) {
+  const StudyResult study =
+      run("\"implicit_euler_linearised[tangent=psd_projection]\", \"discrete_gradient\"",
+          short_runs +
+              "[[problem]]\nscene = \"../scenes/double_spring.toml\"\n"
+              "label = \"pair\"\nlinearise = true\nt_end = 0.3\n");
+  for (const CaseResult& result : study.cases) {
+    EXPECT_EQ(result.verdict, Verdict::not_applicable) << result.reason;
+    EXPECT_THAT(result.reason, HasSubstr("needs the springs of the problem"));
+    EXPECT_EQ(text_of(result, "problem"), "pair");
+    EXPECT_NE(text_of(result, "method"), "");
+  }
+}
+
 TEST(StabilityStudy, HoldsTheRunningCodeAgainstItsRegion) {
   const StudyResult study =
       run("\"rk4\", \"velocity_verlet\", \"adams_bashforth3\", \"bdf2\", \"implicit_euler\"",

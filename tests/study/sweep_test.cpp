@@ -125,6 +125,9 @@ TEST(Sweep, RefusesMistakesOfItsOwnAndOfTheInnerStudy) {
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = []\n" + inner, "empty list");
   refuses(head + "[[parameter]]\npath = 'problem[0].t_end'\nvalues = [1]\nunits = 's'\n" + inner,
           "unknown key \"units\"");
+  refuses("quantities = ['end_eror']\n" + head + stiffness + inner, "did you mean \"end_error\"?");
+  refuses("quantities = ['method']\n" + head + stiffness + inner, "found \"method\", expected numbers");
+  EXPECT_NO_THROW(plan_of("quantities = ['end_error', 'parameter_stiffness']\n" + head + stiffness + inner));
   refuses(head + "[[parameter]]\npath = 'title'\nvalues = ['x']\n[study]\nkind = 'sweep'\n", "\"sweep\"");
 }
 
@@ -210,6 +213,14 @@ TEST(Sweep, NamesThePointOfACaseThatCouldNotBeComputed) {
   const StudyResult result = result_of(plan);
   EXPECT_EQ(result.cases.at(1).verdict, Verdict::fails);
   EXPECT_EQ(number_in(result.cases.at(1), "parameter_stiffness"), 2.5);
+  EXPECT_EQ(text_of(result.cases.at(1), "method"), "rk4");
+  EXPECT_EQ(text_of(result.cases.at(1), "problem"), "harmonic_oscillator");
+  EXPECT_EQ(number_in(result.cases.at(1), "step"), 0.1);
+}
+
+TEST(Sweep, OfTrajectoriesIsDoneAndHoldsNothing) {
+  for (const CaseResult& result : result_of(plan_of(head + stiffness + inner)).cases)
+    EXPECT_EQ(result.verdict, Verdict::done) << result.id << ": " << result.reason;
 }
 
 /// The sections [[problem]] alone.

@@ -1,8 +1,8 @@
 #include "analysis/theory/linearised_system.hpp"
 
 #include "analysis/theory/numerical_jacobian.hpp"
-#include "core/error.hpp"
 #include "ode/functor_system.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw::analysis {
 
@@ -10,7 +10,7 @@ namespace {
 
 void check_tangent(TangentModel model) {
   if (model != TangentModel::exact)
-    throw InputError("a linearised system has its exact tangent stiffness only");
+    throw NotApplicable("a linearised system has its exact tangent stiffness only");
 }
 
 /// ẏ = Jy with a dense J.

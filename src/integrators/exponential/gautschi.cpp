@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/error.hpp"
 #include "dense/eigenvalues.hpp"
 #include "integrators/loop/stepper.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw::integrators {
 
@@ -71,7 +71,7 @@ class GautschiStepper final : public Stepper {
     }
     const auto n = static_cast<Index>(moving_.size());
     if (n > largest_gautschi_size) {
-      throw InputError(
+      throw NotApplicable(
           fmt::format("method \"gautschi\" makes dense matrix functions: found {} moving degrees of "
                       "freedom, expected at most {}",
                       n, largest_gautschi_size));

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/error.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw::integrators {
 
@@ -30,7 +30,7 @@ void ExplicitExternalForce::choose() {
       continue;
     }
     if (labels.kind != "springs" && labels.kind != "anchors") {
-      throw InputError(fmt::format(
+      throw NotApplicable(fmt::format(
           "method \"{}\": found {}, expected springs and anchors alone to be elastic", method_, labels.kind));
     }
     const bool has_dampers = elements.force_class(k) == ForceClass::velocity;

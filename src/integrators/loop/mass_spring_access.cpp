@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/error.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw::integrators {
 
@@ -10,7 +10,7 @@ const mechanics::MassSpringSystem& require_mass_spring_system(const OdeSystem& s
                                                               std::string_view method) {
   const auto* springs = dynamic_cast<const mechanics::MassSpringSystem*>(&system);
   if (springs == nullptr) {
-    throw InputError(
+    throw NotApplicable(
         fmt::format("method \"{}\": the method needs the springs of a mass-spring system", method));
   }
   return *springs;

@@ -8,6 +8,7 @@
 #include "integrators/implicit/implicit_kick.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "ode/force_splitting.hpp"
+#include "ode/not_applicable.hpp"
 #include "ode/pattern_watch.hpp"
 
 namespace fw::integrators {
@@ -41,7 +42,7 @@ class ForcePart final : public SecondOrderSystem {
   void stiffness(double t, ConstVectorRef q, ConstVectorRef v, TangentModel model,
                  SparseMatrix& K) const override {
     if (model != TangentModel::exact)
-      throw InputError("a part of the forces has its exact tangent stiffness only");
+      throw NotApplicable("a part of the forces has its exact tangent stiffness only");
     splitting_.stiff_stiffness(t, q, v, K);
     if (kind_ == Kind::stiff) return;
     SparseMatrix sum = whole_.tangent_pattern();

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "core/error.hpp"
+#include "ode/not_applicable.hpp"
 #include "ode/pattern_watch.hpp"
 #include "oracles/foreign_stepper.hpp"
 
@@ -109,7 +110,7 @@ class OdeivStepper final : public ForeignStepper {
     const Index n = system_.size();
     if (!stepper.is_explicit) {
       if (n > largest_dense_system) {
-        throw InputError(
+        throw NotApplicable(
             fmt::format("method \"gsl:{}\" has a dense Jacobian: found {} unknowns, expected at most {}",
                         name_, n, largest_dense_system));
       }

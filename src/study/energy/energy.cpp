@@ -341,13 +341,16 @@ void plan_energy(const Spec& study, const StudyInput& input, Plan& plan) {
                                     fmt::format("{} (problem \"{}\")", error.what(), problem->entry.label));
         }
       }
-      plan.cases.push_back({.id = group_name(problem->entry.label + "-" + call),
-                            .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" +
-                                        settings::identity_text(settings),
-                            .run = [problem, call, integrator, theory = energy_theory(catalog.theory(call)),
-                                    settings](const RunContext& context) {
-                              return EnergyCase(*problem, call, *integrator, theory, settings, context).run();
-                            }});
+      plan.cases.push_back(
+          {.id = group_name(problem->entry.label + "-" + call),
+           .identity = "energy\n" + problem->entry.identity + "method = " + call + "\n" +
+                       settings::identity_text(settings),
+           .run =
+               [problem, call, integrator, theory = energy_theory(catalog.theory(call)),
+                settings](const RunContext& context) {
+                 return EnergyCase(*problem, call, *integrator, theory, settings, context).run();
+               },
+           .known = {{"problem", problem->entry.label}, {"method", call}}});
     }
   }
 }

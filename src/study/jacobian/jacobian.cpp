@@ -48,9 +48,11 @@ void plan_derivatives(const DerivativeSubject& subject, const std::string& ident
         {.id = group_name(subject.label + "-" + formula),
          .identity = fmt::format("jacobian derivative\n{}seed = {}\n{}formula = {}\n", identity, plan.seed,
                                  settings_text, formula),
-         .run = [subject, formula, settings = derivatives.settings](const RunContext& context) {
-           return run_derivative(subject, formula, settings, context);
-         }});
+         .run =
+             [subject, formula, settings = derivatives.settings](const RunContext& context) {
+               return run_derivative(subject, formula, settings, context);
+             },
+         .known = {{"subject", subject.label}, {"part", "derivative"}, {"variant", formula}}});
   }
 }
 
@@ -81,11 +83,11 @@ void plan_problem_derivatives(const StudyProblem& problem, const DerivativeSpec&
                                   }};
   plan_derivatives(subject, problem.identity, false, derivatives, plan);
   if (!derivatives.pattern) return;
-  plan.cases.push_back(
-      {.id = group_name(problem.label + "-pattern"),
-       .identity = fmt::format("jacobian pattern\n{}seed = {}\n{}", problem.identity, plan.seed,
-                               settings::identity_text(derivatives)),
-       .run = [subject](const RunContext& context) { return run_pattern(subject, context); }});
+  plan.cases.push_back({.id = group_name(problem.label + "-pattern"),
+                        .identity = fmt::format("jacobian pattern\n{}seed = {}\n{}", problem.identity,
+                                                plan.seed, settings::identity_text(derivatives)),
+                        .run = [subject](const RunContext& context) { return run_pattern(subject, context); },
+                        .known = {{"subject", subject.label}, {"part", "pattern"}}});
 }
 
 Compression scaled(Compression start, const StudyProblem& problem) {
@@ -142,9 +144,9 @@ void plan_definiteness(const DefinitenessSpec& given, const CheckedTable& spec,
            .identity = fmt::format("jacobian definiteness\n{}{}compressions = {}\nsteps = {}\ntangent = {}\n",
                                    problem.identity, compression_text(own.start),
                                    fmt::join(own.compressions, " "), fmt::join(own.steps, " "), model),
-           .run = [problem, model, own](const RunContext& context) {
-             return run_definiteness(problem, model, own, context);
-           }});
+           .run = [problem, model,
+                   own](const RunContext& context) { return run_definiteness(problem, model, own, context); },
+           .known = {{"subject", problem.label}, {"part", "definiteness"}, {"variant", model}}});
     }
   }
 }
@@ -182,9 +184,11 @@ void plan_runs(const RunsSpec& given, const StudyInput& input, const std::vector
              .identity = fmt::format("jacobian runs\n{}{}compression = {}\nsteps = {}\nmethod = {}\n",
                                      problem.identity, compression_text(own.start), compression,
                                      fmt::join(own.steps, " "), methods[k]),
-             .run = [problem, call = methods[k], integrator, compression, own](const RunContext& context) {
-               return run_compressed(problem, call, *integrator, compression, own, context);
-             }});
+             .run =
+                 [problem, call = methods[k], integrator, compression, own](const RunContext& context) {
+                   return run_compressed(problem, call, *integrator, compression, own, context);
+                 },
+             .known = {{"subject", problem.label}, {"part", "runs"}, {"variant", methods[k]}}});
       }
     }
   }

@@ -72,9 +72,11 @@ void plan_agreement(const AgreementSpec& spec, const StudyInput& input, Plan& pl
     plan.cases.push_back(
         {.id = group_name(problem->entry().label),
          .identity = "agreement\n" + problem->entry().identity + calls + settings::identity_text(settings),
-         .run = [problem, participants, settings](const RunContext& context) {
-           return run_agreement(*problem, *participants, settings, context);
-         }});
+         .run =
+             [problem, participants, settings](const RunContext& context) {
+               return run_agreement(*problem, *participants, settings, context);
+             },
+         .known = {{"problem", problem->entry().label}}});
   }
 }
 

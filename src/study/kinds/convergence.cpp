@@ -403,9 +403,11 @@ void plan_convergence(const ConvergenceSpec& spec, const StudyInput& input, Plan
       plan.cases.push_back(
           {.id = group_name(problem->entry().label + "-" + call),
            .identity = "convergence\n" + problem->entry().identity + "method = " + call + "\n" + identity,
-           .run = [problem, call, integrator, settings](const RunContext& context) {
-             return ConvergenceCase(*problem, call, *integrator, settings, context).run();
-           }});
+           .run =
+               [problem, call, integrator, settings](const RunContext& context) {
+                 return ConvergenceCase(*problem, call, *integrator, settings, context).run();
+               },
+           .known = {{"problem", problem->entry().label}, {"method", call}}});
     }
   }
 }

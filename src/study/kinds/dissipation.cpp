@@ -66,10 +66,12 @@ void plan_dissipation(const DissipationSpec& spec, const StudyInput& input, Plan
     plan.cases.push_back(
         {.id = group_name(call),
          .identity = "dissipation\nmethod = " + call + "\n" + settings::identity_text(settings),
-         .run = [call, integrator, theory = analysis::oscillator_factors(catalog.theory(call)), spring,
-                 settings](const RunContext& context) {
-           return run_dissipation(call, *integrator, theory, *spring, settings, context);
-         }});
+         .run =
+             [call, integrator, theory = analysis::oscillator_factors(catalog.theory(call)), spring,
+              settings](const RunContext& context) {
+               return run_dissipation(call, *integrator, theory, *spring, settings, context);
+             },
+         .known = {{"method", call}}});
   }
 }
 

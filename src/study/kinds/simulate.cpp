@@ -81,8 +81,9 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   solution.status = watch.judged(solution.status);
 
   CaseResult result;
+  // A study of trajectories claims nothing: a run that diverges by theory is done like one that does not.
   // Numbers that are finite to the end and yet an explosion: a picture worth drawing, but no success.
-  result.verdict = solution.status.ok() ? Verdict::holds
+  result.verdict = solution.status.ok() ? Verdict::done
                    : reached_end        ? Verdict::not_applicable
                                         : Verdict::fails;
   result.reason = solution.status.ok() ? "reached the end" : solution.status.describe();
@@ -154,7 +155,7 @@ CaseResult sample_field(const StudyProblem& entry, const FieldGrid& grid) {
   }
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
   CaseResult result;
-  result.verdict = Verdict::not_applicable;
+  result.verdict = Verdict::done;
   result.reason = "sampled right-hand side";
   result.columns = {{"field_t", "s", times, {}, {}},
                     {"field_y", "SI", states, {times.size(), size}, {}},
@@ -285,13 +286,18 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
       }
       const auto add = [&](const StepControl& control, const std::string& suffix,
                            const std::string& identity) {
+        const auto* fixed = std::get_if<FixedStep>(&control);
         plan.cases.push_back(
             {.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
              .identity = fmt::format("simulate\n{}method = {}\nframes = {}\nconstruction = {}\n{}",
                                      problem->identity, call, frames, construction, identity),
-             .run = [problem, call, integrator, control, frames, construction](const RunContext& context) {
-               return run_trajectory(*problem, call, *integrator, control, frames, construction, context);
-             }});
+             .run =
+                 [problem, call, integrator, control, frames, construction](const RunContext& context) {
+                   return run_trajectory(*problem, call, *integrator, control, frames, construction, context);
+                 },
+             .known = {{"problem", problem->label},
+                       {"method", call},
+                       {"step", fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN()}}});
       };
       const bool by_tolerances =
           integrator->info().is_adaptive && (steps.empty() || !integrator->info().has_fixed_step);
@@ -324,7 +330,8 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
     plan.cases.push_back(
         {.id = "vector_field",
          .identity = "vector field\n" + first->identity + settings::identity_text(*study.field),
-         .run = [first, grid](const RunContext&) { return sample_field(*first, grid); }});
+         .run = [first, grid](const RunContext&) { return sample_field(*first, grid); },
+         .known = {{"problem", first->label}, {"method", "vector field"}}});
   }
 }
 
@@ -336,7 +343,9 @@ StudyKind simulate_kind() {
        .title = "Trajectories",
        .description = "states over time for every method, step and problem, with the exact solution",
        .summary = columns_of<SimulateRow>(),
-       .verdict_meaning = "`holds`: reached the end; `not applicable`: with an energy from nowhere",
+       .verdict_meaning =
+           "`done`: reached the end, nothing is claimed; `not applicable`: with an energy from nowhere; "
+           "`fails`: stopped before the end",
        .reason_meaning = ""},
       plan_simulate);
 }

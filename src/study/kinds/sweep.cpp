@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "scene/scene.hpp"
 #include "study/parameter_values.hpp"
+#include "text/closest_name.hpp"
 #include "text/toml_assignment.hpp"
 
 namespace fw::study {
@@ -311,6 +312,26 @@ std::vector<TomlAssignment> inherited(const CheckedTable& study, const Plan& pla
   return assignments;
 }
 
+/// Throws InputError where `quantities` names what the plot cannot show: a name that is no column of the summary, or
+/// one of texts.
+void check_quantities(const SweepSpec& sweep, const CheckedTable& spec, const Plan& plan,
+                      const std::vector<Parameter>& parameters) {
+  std::vector<std::string> known;
+  for (const SummaryColumn& column : plan.summary)
+    if (column.type != CellType::text) known.push_back(column.name);
+  for (const Parameter& parameter : parameters) {
+    const SummaryCell cell = cell_of(parameter, 0);
+    if (!std::holds_alternative<std::string>(cell.value)) known.push_back(cell.name);
+  }
+  for (std::size_t k = 0; k < sweep.quantities.size(); ++k) {
+    const std::string& name = sweep.quantities[k];
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    spec.fail("quantities", {k},
+              fmt::format("found \"{}\", expected numbers of the summary ({}){}", name,
+                          fmt::join(known, ", "), did_you_mean(name, known)));
+  }
+}
+
 void plan_sweep(const SweepSpec& sweep, const StudyInput& input, const std::vector<StudyKind>& kinds,
                 Plan& plan) {
   const CheckedTable& spec = input.file;
@@ -340,6 +361,7 @@ void plan_sweep(const SweepSpec& sweep, const StudyInput& input, const std::vect
       record_scenes(resolved_study, study, inner, parameters);
       plan.warnings = inner.warnings;
       plan.summary = inner.summary;
+      check_quantities(sweep, spec, plan, parameters);
       if (plan.time_limit == 0.0) plan.time_limit = inner.time_limit;
     }
     is_first = false;

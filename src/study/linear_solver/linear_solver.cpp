@@ -125,7 +125,8 @@ void plan_linear_solvers(const Spec& spec, const StudyInput& input, Plan& plan) 
         plan.cases.push_back(
             {.id = group_name(name + "-spectrum"),
              .identity = identity + "spectrum\n",
-             .run = [system, settings](const RunContext&) { return run_spectrum(*system, settings); }});
+             .run = [system, settings](const RunContext&) { return run_spectrum(*system, settings); },
+             .known = {{"problem", entry.label}, {"step", step}, {"solver", "spectrum"}}});
       }
       for (const std::string& call : solvers) {
         plan.cases.push_back(
@@ -133,7 +134,8 @@ void plan_linear_solvers(const Spec& spec, const StudyInput& input, Plan& plan) 
              .identity = identity + "solver = " + call + "\n",
              .run = [system, call, settings](
                         const RunContext& context) { return run_solver(*system, call, settings, context); },
-             .is_timed = true});
+             .is_timed = true,
+             .known = {{"problem", entry.label}, {"step", step}, {"solver", call}}});
       }
     }
   }

@@ -83,10 +83,12 @@ void plan_propagation(const Spec& study, const StudyInput& input, Plan& plan) {
             {.id = group_name(fmt::format("{}-{}-h{}", network->label, call, step)),
              .identity = fmt::format("propagation\n{}method = {}\nstep = {}\n{}", network->identity, call,
                                      step, settings::identity_text(settings)),
-             .run = [network, call, integrator, data = catalog.theory(call).on_position_forces, step,
-                     settings](const RunContext& context) {
-               return run_propagation(*network, call, *integrator, data, step, settings, context);
-             }});
+             .run =
+                 [network, call, integrator, data = catalog.theory(call).on_position_forces, step,
+                  settings](const RunContext& context) {
+                   return run_propagation(*network, call, *integrator, data, step, settings, context);
+                 },
+             .known = {{"problem", network->label}, {"method", call}, {"step", step}}});
       }
     }
   }

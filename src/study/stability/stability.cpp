@@ -179,11 +179,12 @@ void plan_stability(const Spec& study, const StudyInput& input, Plan& plan) {
     const RegionSettings settings = region_settings(*study.regions, spec.table("regions"));
     const std::string identity = settings::identity_text(*study.regions);
     for (const auto& method : methods) {
-      plan.cases.push_back({.id = group_name("region-" + method->call),
-                            .identity = "stability region\nmethod = " + method->call + "\n" + identity,
-                            .run = [method, settings](const RunContext& context) {
-                              return run_region_case(*method, settings, context);
-                            }});
+      plan.cases.push_back(
+          {.id = group_name("region-" + method->call),
+           .identity = "stability region\nmethod = " + method->call + "\n" + identity,
+           .run = [method, settings](
+                      const RunContext& context) { return run_region_case(*method, settings, context); },
+           .known = {{"part", "region"}, {"method", method->call}}});
     }
   }
   if (study.problems.empty()) return;
@@ -197,9 +198,13 @@ void plan_stability(const Spec& study, const StudyInput& input, Plan& plan) {
       plan.cases.push_back(
           {.id = group_name(family->label + "-" + method->call),
            .identity = "stability limit\n" + family->identity + "method = " + method->call + "\n" + identity,
-           .run = [family, method, settings](const RunContext& context) {
-             return run_limit_case(*family, *method, settings, context);
-           }});
+           .run =
+               [family, method, settings](const RunContext& context) {
+                 return run_limit_case(*family, *method, settings, context);
+               },
+           .known = {{"part", family->parameter.empty() ? "limit" : "law"},
+                     {"problem", family->label},
+                     {"method", method->call}}});
     }
   }
 }

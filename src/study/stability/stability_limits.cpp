@@ -124,7 +124,11 @@ class LimitCase {
     }
     result_.reason = is_theory ? reason
                      : std::isnan(limits_.front().predicted)
-                         ? "no prediction for this scheme on this problem; " + reason
+                         ? method_.integrator->info().needs.has(Capability::springs)
+                               ? "no prediction: the method needs springs, the linear part along the "
+                                 "solution has none; " +
+                                     reason
+                               : "no prediction for this scheme on this problem; " + reason
                          : "nonlinear, prediction from J along the solution; " + reason;
     if (is_theory) result_.verdict = all_hold ? Verdict::holds : Verdict::fails;
   }

@@ -28,11 +28,13 @@ class LimitMeasurement {
         settings_(settings),
         context_(context),
         spectrum_(problem.spectrum(settings, context)),
-        system_(spectrum_.system) {}
+        system_(spectrum_.system),
+        original_has_springs_(has_springs(*problem.entry().problem.ivp.system)) {}
 
   StabilityLimit run() {
     StabilityLimit limit;
-    limit.failure = why_not_applicable(method_.integrator->info(), *system_);
+    limit.failure = why_lacking_springs();
+    if (limit.failure.empty()) limit.failure = why_not_applicable(method_.integrator->info(), *system_);
     if (limit.failure.empty()) limit.failure = spectrum_.failure;
     if (limit.failure.empty() && !(spectrum_.spectral_radius > 0.0))
       limit.failure = "J has no eigenvalue other than 0";
@@ -52,6 +54,18 @@ class LimitMeasurement {
   }
 
  private:
+  static bool has_springs(const OdeSystem& system) {
+    return system.second_order() != nullptr && system.second_order()->has_springs();
+  }
+
+  /// Springs are lost where the problem is replaced by its linear part, which the method cannot know.
+  std::string why_lacking_springs() const {
+    if (!method_.integrator->info().needs.has(Capability::springs) || !original_has_springs_) return {};
+    if (has_springs(*system_)) return {};
+    return "the method needs the springs of the problem, the limit is taken from its linear part M q'' = K q "
+           "+ D q', which has none";
+  }
+
   double unit() const { return 1.0 / spectrum_.spectral_radius; }
   double farthest() const { return settings_.farthest * unit(); }
 
@@ -268,6 +282,7 @@ class LimitMeasurement {
   const RunContext& context_;
   const ProblemSpectrum& spectrum_;
   std::shared_ptr<const OdeSystem> system_;
+  bool original_has_springs_;
 };
 
 }  // namespace

@@ -137,6 +137,13 @@ void plan_stiffness(const Spec& spec, const StudyInput& input, Plan& plan) {
     const std::string identity =
         fmt::format("stiffness\n{}parameter = {}\nvalues = {}\nreference = {}\n{}", members,
                     family->parameter, fmt::join(family->values, " "), reference, settings_text);
+    const auto known = [&](const std::string& method,
+                           const std::string& measure) -> std::vector<std::pair<std::string, CellValue>> {
+      return {{"problem", family->label},
+              {"method", method},
+              {"measure", measure},
+              {"parameter", family->parameter}};
+    };
     for (const auto& method : methods) {
       const std::string name = family->label + "-" + method->call;
       const std::string text = identity + "method = " + method->call + "\n";
@@ -147,21 +154,25 @@ void plan_stiffness(const Spec& spec, const StudyInput& input, Plan& plan) {
                                   [family = family, method, settings](const RunContext& context) {
                                     return run_stiffness_cost(*family, *method, settings, context);
                                   },
-                              .is_timed = true});
+                              .is_timed = true,
+                              .known = known(method->call, measures_cost)});
       }
       if (spec.measures != Measures::cost && method->integrator->info().has_fixed_step) {
         plan.cases.push_back({.id = group_name(name + "-orders"),
                               .identity = text + "orders\n",
-                              .run = [family = family, method, settings](const RunContext& context) {
-                                return run_order_map(*family, *method, settings, context);
-                              }});
+                              .run =
+                                  [family = family, method, settings](const RunContext& context) {
+                                    return run_order_map(*family, *method, settings, context);
+                                  },
+                              .known = known(method->call, measures_orders)});
       }
     }
-    plan.cases.push_back({.id = group_name(family->label + "-overview"),
-                          .identity = identity + "overview\n",
-                          .run = [family = family](const RunContext& context) {
-                            return run_stiffness_overview(*family, context);
-                          }});
+    plan.cases.push_back(
+        {.id = group_name(family->label + "-overview"),
+         .identity = identity + "overview\n",
+         .run = [family =
+                     family](const RunContext& context) { return run_stiffness_overview(*family, context); },
+         .known = known("overview", measures_overview)});
   }
   plan.conclude = conclude_stiffness;
 }

@@ -184,9 +184,9 @@ void plan_verify(const Spec& spec, const StudyInput& input, Plan& plan) {
     plan.cases.push_back(
         {.id = group_name(call),
          .identity = fmt::format("verify\nmethod = {}\nparts = {}\n", call, fmt::join(names, " ")),
-         .run = [scheme, parts](const RunContext& context) {
-           return run_verification(*scheme, parts, context);
-         }});
+         .run = [scheme,
+                 parts](const RunContext& context) { return run_verification(*scheme, parts, context); },
+         .known = {{"method", call}}});
   }
 }
 

@@ -159,12 +159,17 @@ void plan_work_precision(const Spec& study, const StudyInput& input, Plan& plan)
              .identity = fmt::format("{}method = {}\ncontrol = {}\n", identity, call, to_string(control)),
              .run = [spec = WorkPrecisionSpec{problem, call, integrator, control, settings}](
                         const RunContext& context) { return run_work_precision(spec, context); },
-             .is_timed = true});
+             .is_timed = true,
+             .known = {{"problem", problem->entry().label},
+                       {"method", call},
+                       {"family", integrator->info().family},
+                       {"control", to_string(control)}}});
       }
     }
     plan.cases.push_back({.id = group_name(problem->entry().label + "-front"),
                           .identity = "work_precision front\n" + identity,
-                          .run = [problem](const RunContext&) { return empty_front(problem->entry()); }});
+                          .run = [problem](const RunContext&) { return empty_front(problem->entry()); },
+                          .known = {{"problem", problem->entry().label}, {"method", front_method}}});
   }
   plan.conclude = conclude_fronts;
 }

@@ -83,6 +83,7 @@ std::string joined(const std::vector<std::string>& names) {
 void conclude_fronts(StudyResult& study) {
   std::map<std::string, Ladders> problems;
   for (CaseResult& result : study.cases) {
+    if (result.key.empty()) continue;  // could not be computed
     Ladders& problem = problems[text_of(result, "problem")];
     if (text_of(result, "method") == front_method) {
       problem.front = &result;
