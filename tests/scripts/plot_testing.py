@@ -3,10 +3,12 @@
 import contextlib
 import io
 import pathlib
+import runpy
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent.parent / "scripts"
 sys.path.insert(0, str(SCRIPTS))
@@ -39,6 +41,17 @@ class PlotTest(unittest.TestCase):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), \
                 plot_style.plt.rc_context({"savefig.dpi": 50}):
             code = plot_style.main("", plot_results.choose_drawing, [*map(str, arguments), "--formats", "png"])
+        return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+
+    def run_here(self, name, *arguments):
+        """A script as from the shell, but in this process: starting matplotlib takes longer than most pictures."""
+        out, err, code = io.StringIO(), io.StringIO(), 0
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), \
+                unittest.mock.patch.object(sys, "argv", [name, *map(str, arguments)]):
+            try:
+                runpy.run_path(str(SCRIPTS / name), run_name="__main__")
+            except SystemExit as end:
+                code = end.code or 0
         return subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
 
     def script(self, name, *arguments):

@@ -38,7 +38,7 @@ class EveryPlot(PlotTest):
     def test_is_written_as_png_and_pdf_beside_its_file(self):
         for kind in synthetic_results.ALL:
             with self.subTest(kind):
-                answer = self.script(f"plot_{kind}.py", self.write(kind))
+                answer = self.run_here(f"plot_{kind}.py", self.write(kind))
                 self.assertEqual(answer.returncode, 0, answer.stderr)
                 for extension, magic in (("png", b"\x89PNG"), ("pdf", b"%PDF")):
                     self.assertTrue((self.folder / f"{kind}.{extension}").read_bytes().startswith(magic))
@@ -158,7 +158,7 @@ class CasesThatCouldNotBeComputed(PlotTest):
             names = self.names(kind)
             original = self.folder / f"{kind}.h5"
             original.rename(self.folder / "original.h5")
-            for name in names if len(names) > 1 else []:
+            for name in {names[0], names[len(names) // 2], names[-1]} if len(names) > 1 else []:
                 with self.subTest(kind, case=name):
                     path = pathlib.Path(shutil.copy(self.folder / "original.h5", original))
                     fail(path, [name])
