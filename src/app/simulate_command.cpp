@@ -33,7 +33,7 @@ struct SimulateArguments {
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
   bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
   bool has_end_time = false, has_frames = false, has_every = false;
-  std::int64_t frames = 101;
+  std::int64_t frames = record::default_frames;
 };
 
 constexpr std::int64_t largest_frame_count = 1'000'000'000;
@@ -113,6 +113,14 @@ void tell_of_short_last_step(const StepControl& control, const StepCount& count,
   }
 }
 
+void tell_of_uneven_frames(const record::FrameOrigin& origin, std::uint64_t frames) {
+  if (origin.spacing != "uneven") return;
+  fmt::print(stderr,
+             "federwerk: note: {} frames do not divide the steps: the distances between them differ by a "
+             "step; without --frames they are equal\n",
+             frames);
+}
+
 std::string default_output(const SimulateArguments& arguments) {
   std::string method = arguments.method;
   for (char& letter : method) {
@@ -173,6 +181,10 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
   compare(!arguments.method.empty(), "--method", arguments.method, from.method);
   compare(arguments.has_petsc, "--petsc", arguments.petsc, from.petsc);
   compare(arguments.has_end_time, "--t-end", arguments.end_time, from.end_time);
+  if (arguments.has_frames && from.frames == 0) {
+    throw InputError(fmt::format("--frames: found {}, expected none as in the checkpoint \"{}\"",
+                                 arguments.frames, arguments.continued));
+  }
   compare(arguments.has_frames, "--frames", arguments.frames, static_cast<std::int64_t>(from.frames));
   if (const auto* fixed = std::get_if<FixedStep>(&from.control)) {
     if (arguments.has_relative || arguments.has_absolute) {
@@ -201,6 +213,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
   arguments.has_petsc = !from.petsc.empty();
   arguments.end_time = from.end_time;
   arguments.frames = static_cast<std::int64_t>(from.frames);
+  arguments.has_frames = from.frames != 0;  // 0: the default
   if (arguments.output.empty()) arguments.output = from.output;
   if (const std::string here = program_name(); here != from.program) {
     fmt::print(
@@ -245,7 +258,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
     throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
   }
-  if (arguments.frames < 2 || arguments.frames > largest_frame_count) {
+  if (arguments.has_frames && (arguments.frames < 2 || arguments.frames > largest_frame_count)) {
     throw InputError(fmt::format("--frames: found {}, expected an integer from 2 to {}", arguments.frames,
                                  largest_frame_count));
   }
@@ -280,11 +293,14 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   tell_of_short_last_step(control, count, arguments.end_time);
 
   const std::atomic<bool>& interrupted = install_interrupt_flag();
-  const auto wanted = static_cast<std::uint64_t>(arguments.frames);
-  const std::uint64_t expected =
-      std::holds_alternative<FixedStep>(control) ? std::min(wanted, count.total() + 1) : wanted;
+  std::optional<std::uint64_t> wanted;
+  if (arguments.has_frames) wanted = static_cast<std::uint64_t>(arguments.frames);
+  const record::FramePlan plan(ivp.t0, ivp.t1, control, wanted);
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
-                                 static_cast<Index>(expected));
+                                 static_cast<Index>(plan.count()));
+  const record::FrameOrigin origin = plan.origin(integrator->info(), *ivp.system);
+  tell_of_uneven_frames(origin, plan.count());
+  writer.describe_frames(origin);
   SolveOptions options{.stop = StopToken(interrupted)};
   std::optional<CheckpointWriter> checkpoints;
   if (!arguments.checkpoint.empty()) {
@@ -297,13 +313,13 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
                                           .output = arguments.output,
                                           .control = control,
                                           .end_time = arguments.end_time,
-                                          .frames = wanted,
+                                          .frames = wanted.value_or(0),
                                           .time = from ? from->time : ivp.t0},
                         options.stop, writer);
     options.checkpoints = &*checkpoints;
   }
   record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
-  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
+  record::FrameSelector frames(plan, sink);
   SimulationObserver observer(frames, arguments.end_time);
   study::EnergyWatch watch(study::EnergyGauge(*system), observer);
   if (from) {

@@ -31,6 +31,8 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   line("title", text_of(attributes, "title"));
   line("status", text_of(attributes, "status"));
   line("solver", text_of(attributes, "solver_status"));
+  const std::string frames = text_of(attributes, "frame_origin");  // not in files of older versions
+  if (!frames.empty()) line("frames", frames + "; spacing " + text_of(attributes, "frame_spacing"));
   line("created", text_of(attributes, "created"));
   line("command", text_of(attributes, "command_line"));
   line("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""));

@@ -70,11 +70,12 @@ void declare(SummaryRow& a, const Row& row) {
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
-                          const StepControl& control, std::uint64_t frames, std::int64_t construction,
-                          const RunContext& context) {
+                          const StepControl& control, std::optional<std::uint64_t> frames,
+                          std::int64_t construction, const RunContext& context) {
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
-  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
+  const record::FramePlan plan(ivp.t0, ivp.t1, control, frames);
+  record::FrameSelector selector(plan, columns);
   EnergyWatch watch(EnergyGauge(entry.problem), selector);
   Solution solution = context.solve(integrator, ivp, control, watch);
   const bool reached_end = solution.status.ok();
@@ -89,10 +90,13 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
+  const record::FrameOrigin origin = plan.origin(integrator.info(), *ivp.system);
   result.columns = {
       {"problem", "", std::vector<std::string>{entry.label}, {}, {}},
       {"method", "", std::vector<std::string>{call}, {}, {}},
       {"step", "s", std::vector<double>{step}, {}, {}},
+      {"frame_origin", "", std::vector<std::string>{origin.states}, {}, {}},
+      {"frame_spacing", "", std::vector<std::string>{origin.spacing}, {}, {}},
       {"second_order", "1", std::vector<std::int64_t>{ivp.system->second_order() != nullptr ? 1 : 0}, {}, {}},
       {"time", "s", columns.times(), {}, {}},
       {"state", "SI", columns.states(), {columns.times().size(), size}, {}}};
@@ -200,7 +204,7 @@ void declare(Archive& a, Tolerances& tolerances) {
 struct Spec {
   std::vector<std::string> methods;
   std::optional<std::vector<double>> steps;
-  std::int64_t frames = 101;
+  std::int64_t frames = 0;  ///< 0: the default
   std::int64_t construction_steps = 0;
   Tolerances tolerances;
   std::optional<FieldSpec> field;
@@ -216,8 +220,10 @@ void declare(Archive& a, Spec& spec) {
         .doc("of `verlet*`, the interval has to be a whole number of steps"));
   a(setting("frames", spec.frames)
         .integers(2, 10'000'000)
+        .or_word("auto", 0)
         .quick_at_most(101)
-        .doc("states that are stored, from start to end inclusive"));
+        .doc("states that are stored, from start to end inclusive; `auto`: 101, of constant steps about as "
+             "many at equal spacing"));
   a(setting("construction_steps", spec.construction_steps)
         .integers(0, 1000)
         .doc("of a scalar equation: how so many first steps come about (slopes at both ends, solutions "
@@ -265,7 +271,9 @@ void plan_simulate(const Spec& study, const StudyInput& input, Plan& plan) {
   const std::vector<double> steps = study.steps.value_or(std::vector<double>());
   const AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
                               .absolute_tolerance = study.tolerances.absolute};
-  const auto frames = static_cast<std::uint64_t>(study.frames);
+  std::optional<std::uint64_t> frames;
+  if (study.frames > 0) frames = static_cast<std::uint64_t>(study.frames);
+  const std::string frames_text = frames ? std::to_string(*frames) : "auto";
   const std::int64_t construction = study.construction_steps;
 
   std::shared_ptr<const StudyProblem> first;
@@ -288,7 +296,7 @@ void plan_simulate(const Spec& study, const StudyInput& input, Plan& plan) {
         plan.cases.push_back(
             {.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
              .identity = fmt::format("simulate\n{}method = {}\nframes = {}\nconstruction = {}\n{}",
-                                     problem->identity, call, frames, construction, identity),
+                                     problem->identity, call, frames_text, construction, identity),
              .run = [problem, call, integrator, control, frames, construction](const RunContext& context) {
                return run_trajectory(*problem, call, *integrator, control, frames, construction, context);
              }});
