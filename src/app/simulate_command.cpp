@@ -113,14 +113,6 @@ void tell_of_short_last_step(const StepControl& control, const StepCount& count,
   }
 }
 
-void tell_of_uneven_frames(const record::FrameOrigin& origin, std::uint64_t frames) {
-  if (origin.spacing != "uneven") return;
-  fmt::print(stderr,
-             "federwerk: note: {} frames do not divide the steps: the distances between them differ by a "
-             "step; without --frames they are equal\n",
-             frames);
-}
-
 std::string default_output(const SimulateArguments& arguments) {
   std::string method = arguments.method;
   for (char& letter : method) {
@@ -129,11 +121,11 @@ std::string default_output(const SimulateArguments& arguments) {
   return std::filesystem::path(arguments.scene).stem().string() + "-" + method + ".h5";
 }
 
-void print_summary(const std::string& output, const Solution& solution, const record::FrameSelector& frames,
-                   std::uint64_t degenerate) {
-  fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output,
-             frames.written(), solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations,
-             solution.work.seconds);
+void print_summary(const std::string& output, const Solution& solution, std::uint64_t frames,
+                   const record::FrameOrigin& origin, std::uint64_t degenerate) {
+  fmt::print("{}: {} frames{} to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output, frames,
+             origin.spacing == "uneven" ? ", unevenly spaced," : "", solution.time,
+             solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
   if (degenerate > 0) {
     fmt::print(stderr,
                "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its "
@@ -299,7 +291,6 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
                                  static_cast<Index>(plan.count()));
   const record::FrameOrigin origin = plan.origin(integrator->info(), *ivp.system);
-  tell_of_uneven_frames(origin, plan.count());
   writer.describe_frames(origin);
   SolveOptions options{.stop = StopToken(interrupted)};
   std::optional<CheckpointWriter> checkpoints;
@@ -336,7 +327,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   solution.status = watch.judged(solution.status);
   writer.finish(solution.status, solution.work);
   if (arguments.xdmf) store::write_xdmf(arguments.output);
-  print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
+  print_summary(arguments.output, solution, frames.written(), origin,
+                system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
     fmt::print(stderr, "federwerk: {}; what was computed is in {}{}\n", solution.status.describe(),
                arguments.output,
@@ -375,8 +367,10 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::Option* end_time =
       command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->type_name("T");
   CLI::Option* frames =
-      command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
-          ->capture_default_str()
+      command
+          ->add_option("--frames", arguments->frames,
+                       "States to store from start to end inclusive; default: 101, of a fixed step about as "
+                       "many at equal spacing")
           ->type_name("N");
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
       ->type_name("FILE.h5");

@@ -11,7 +11,7 @@ std::string to_string(DenseOutput dense_output) {
     case DenseOutput::side_steps:
       return "side steps of the scheme";
     case DenseOutput::side_step_polynomial:
-      return "polynomials through side steps of the scheme";
+      return "polynomials through states of the scheme inside the step";
     case DenseOutput::library:
       return "the library's interpolant";
     case DenseOutput::side_runs:

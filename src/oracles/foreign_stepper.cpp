@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "core/work_counters.hpp"
 #include "integrators/loop/run_loop.hpp"
 #include "integrators/loop/side_steps.hpp"
 #include "integrators/loop/stepper.hpp"
@@ -21,14 +22,14 @@ namespace {
 class SideSolver {
  public:
   SideSolver(const MethodInfo& info, const ForeignStepperFactory& make_stepper, const Ivp& ivp,
-             const StepControl& for_library, Work& work)
-      : make_stepper_(make_stepper), ivp_(ivp), control_(for_library), work_(work) {
+             const StepControl& for_library)
+      : make_stepper_(make_stepper), ivp_(ivp), control_(for_library) {
     if (info.dense_output == DenseOutput::side_steps) control_ = FixedStep{.step = ivp.t1 - ivp.t0};
+    tries_whole_ = info.dense_output == DenseOutput::side_runs && !info.is_multistep;
   }
 
   Status reach(double t, double t_end, ConstVectorRef y, VectorRef out) {
-    if (!stepper_) stepper_ = make_stepper_(ivp_, control_, work_);
-    stepper_->restart(t, y);
+    start(t, t_end, y);
     out = y;
     for (int steps = 0; t < t_end; ++steps) {
       if (steps == most_steps) return {StatusCode::step_limit, "too many steps inside a step"};
@@ -37,17 +38,36 @@ class SideSolver {
     return {};
   }
 
+  /// Adds what it has evaluated and solved. Steps are those of the run: its own are not counted.
   void collect_work(Work& work) const {
-    if (stepper_) stepper_->collect_work(work);
+    Work done = work_;
+    if (stepper_) stepper_->collect_work(done);
+    done.accepted_steps = done.rejected_steps = 0;
+    for (const WorkCounter& counter : work_counters) work.*counter.count += done.*counter.count;
   }
 
  private:
   static constexpr int most_steps = 10'000;
 
+  /// A method without history may well reach the end in one step: the first that it tries.
+  void start(double t, double t_end, ConstVectorRef y) {
+    if (tries_whole_) {
+      if (stepper_) stepper_->collect_work(work_);
+      ivp_.t0 = t;
+      ivp_.y0 = y;
+      std::get<AdaptiveStep>(control_).initial_step = t_end - t;
+      stepper_ = make_stepper_(ivp_, control_, work_);
+    } else {
+      if (!stepper_) stepper_ = make_stepper_(ivp_, control_, work_);
+      stepper_->restart(t, y);
+    }
+  }
+
   const ForeignStepperFactory& make_stepper_;
   Ivp ivp_;
   StepControl control_;
-  Work& work_;
+  Work work_;
+  bool tries_whole_ = false;
   std::unique_ptr<ForeignStepper> stepper_;
 };
 
@@ -61,7 +81,7 @@ class ForeignSteps final : public integrators::StepSource {
         start_(ivp.t0),
         end_(ivp.t1),
         stepper_(make_stepper(ivp, for_library, work)),
-        side_(info, make_stepper, ivp, for_library, work),
+        side_(info, make_stepper, ivp, for_library),
         inside_(
             *ivp.system, 0,
             [this](double t, double t_end, ConstVectorRef y, VectorRef out) {

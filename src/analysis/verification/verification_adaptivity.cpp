@@ -11,24 +11,6 @@
 
 namespace fw::analysis {
 
-namespace {
-
-/// Least squares slope of log error over log tolerance: all points, since step selection scatters them.
-double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y) {
-  const double n = static_cast<double>(x.size());
-  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-300));
-    sx += u;
-    sy += v;
-    sxx += u * u;
-    sxy += u * v;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
-}  // namespace
-
 void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks) {
   PropertyCheck check{.property = "order of the error estimate"};
   const auto* adaptive = dynamic_cast<const integrators::AdaptiveIntegrator*>(&scheme.integrator);

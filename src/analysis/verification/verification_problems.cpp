@@ -193,6 +193,19 @@ std::optional<double> local_slope(const std::vector<double>& steps, const std::v
   return fit.order;
 }
 
+double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-300));
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
 double relative_error(ConstVectorRef y, const std::vector<Float128>& exact) {
   double error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -201,6 +214,20 @@ double relative_error(ConstVectorRef y, const std::vector<Float128>& exact) {
     size = std::max(size, std::abs(static_cast<double>(exact[i])));
   }
   return error / size;
+}
+
+Ivp ensemble_start(ProblemFunction problem, int member) {
+  Ivp ivp = problem();
+  const SecondOrderSystem* second_order = ivp.system->second_order();
+  for (Index i = 0; i < ivp.y0.size(); ++i) {
+    const bool fixed =
+        second_order != nullptr &&
+        second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
+    // Multiples of 1/64, exact in binary.
+    if (!fixed)
+      ivp.y0[i] += 0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
+  }
+  return ivp;
 }
 
 namespace {
@@ -237,20 +264,7 @@ class CertifiedProblems {
 
 const CertifiedProblem& member_of(ProblemFunction problem, int member) {
   static CertifiedProblems<std::pair<ProblemFunction, int>> problems;
-  return problems.get({problem, member}, [&] {
-    Ivp ivp = problem();
-    const SecondOrderSystem* second_order = ivp.system->second_order();
-    for (Index i = 0; i < ivp.y0.size(); ++i) {
-      const bool fixed =
-          second_order != nullptr &&
-          second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
-      // Multiples of 1/64, exact in binary.
-      if (!fixed)
-        ivp.y0[i] +=
-            0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
-    }
-    return ivp;
-  });
+  return problems.get({problem, member}, [&] { return ensemble_start(problem, member); });
 }
 
 const CertifiedProblem& lengthened_problem(ProblemFunction problem, double length) {

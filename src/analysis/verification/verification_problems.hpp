@@ -46,10 +46,15 @@ double relative_error(ConstVectorRef y, const std::vector<Float128>& exact);
 std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values,
                                   double floor);
 
+/// Least squares slope of log y over log x of all points.
+double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y);
+
 /// A problem from several initial states: in one of them an error coefficient may happen to vanish, hardly in
 /// all.
 inline constexpr int ensemble_size = 3;
 const Ivp& ensemble_member(ProblemFunction problem, int member);
+/// The same without a certified end.
+Ivp ensemble_start(ProblemFunction problem, int member);
 /// The certified end state of a member, computed once per process.
 const ReferenceState& certified_end(ProblemFunction problem, int member);
 

@@ -58,6 +58,7 @@ struct Row {
   double end_time = std::numeric_limits<double>::quiet_NaN();
   double end_error = std::numeric_limits<double>::quiet_NaN();
   Status status{};
+  std::string frame_origin{}, frame_spacing{};
 };
 
 void declare(SummaryRow& a, const Row& row) {
@@ -67,6 +68,10 @@ void declare(SummaryRow& a, const Row& row) {
   a("end_time", "s", row.end_time, "where the run ended; NaN of the vector field");
   a("end_error", "SI", row.end_error, "‖y − exact‖₂ at the end; NaN without closed form or end");
   a("status", "", to_string(row.status.code), "`success`, or code of why the solver stopped");
+  a("frame_origin", "", row.frame_origin,
+    "how the states of frames came about: `ends of steps`, or `dense output of order p: …`");
+  a("frame_spacing", "", row.frame_spacing,
+    "of frames in time: `even`, `even but for the last`, or `uneven`");
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
@@ -87,16 +92,15 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
                    : reached_end        ? Verdict::not_applicable
                                         : Verdict::fails;
   result.reason = solution.status.ok() ? "reached the end" : solution.status.describe();
+  const record::FrameOrigin origin = plan.origin(integrator.info(), *ivp.system);
+  if (origin.spacing == "uneven") result.reason += "; frames are unevenly spaced";
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
-  const record::FrameOrigin origin = plan.origin(integrator.info(), *ivp.system);
   result.columns = {
       {"problem", "", std::vector<std::string>{entry.label}, {}, {}},
       {"method", "", std::vector<std::string>{call}, {}, {}},
       {"step", "s", std::vector<double>{step}, {}, {}},
-      {"frame_origin", "", std::vector<std::string>{origin.states}, {}, {}},
-      {"frame_spacing", "", std::vector<std::string>{origin.spacing}, {}, {}},
       {"second_order", "1", std::vector<std::int64_t>{ivp.system->second_order() != nullptr ? 1 : 0}, {}, {}},
       {"time", "s", columns.times(), {}, {}},
       {"state", "SI", columns.states(), {columns.times().size(), size}, {}}};
@@ -119,7 +123,8 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = cells_of(Row{entry.label, call, step, solution.time, end_error, solution.status});
+  result.summary = cells_of(
+      Row{entry.label, call, step, solution.time, end_error, solution.status, origin.states, origin.spacing});
   return result;
 }
 
