@@ -56,6 +56,7 @@ std::string describe_method(const DescribedMethod& method) {
                : info.is_adaptive                      ? "adaptive (--rtol, --atol)"
                : info.is_multistep ? "fixed, the interval has to be a whole number of steps"
                                    : "fixed (--step)");
+  line("inside a step", to_string(info.dense_output));
   line("symplectic", info.is_symplectic ? "yes (forces that depend on position)" : "no");
   line("linear stability", info.order == 0    ? "depends on the order in use"
                            : info.is_l_stable ? "A-stable, L-stable"

@@ -33,7 +33,7 @@ struct SimulateArguments {
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
   bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
   bool has_end_time = false, has_frames = false, has_every = false;
-  std::int64_t frames = 101;
+  std::int64_t frames = record::default_frames;
 };
 
 constexpr std::int64_t largest_frame_count = 1'000'000'000;
@@ -121,11 +121,11 @@ std::string default_output(const SimulateArguments& arguments) {
   return std::filesystem::path(arguments.scene).stem().string() + "-" + method + ".h5";
 }
 
-void print_summary(const std::string& output, const Solution& solution, const record::FrameSelector& frames,
-                   std::uint64_t degenerate) {
-  fmt::print("{}: {} frames to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output,
-             frames.written(), solution.time, solution.work.accepted_steps, solution.work.rhs_evaluations,
-             solution.work.seconds);
+void print_summary(const std::string& output, const Solution& solution, std::uint64_t frames,
+                   const record::FrameOrigin& origin, std::uint64_t degenerate) {
+  fmt::print("{}: {} frames{} to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output, frames,
+             origin.spacing == "uneven" ? ", unevenly spaced," : "", solution.time,
+             solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
   if (degenerate > 0) {
     fmt::print(stderr,
                "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its "
@@ -173,6 +173,10 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
   compare(!arguments.method.empty(), "--method", arguments.method, from.method);
   compare(arguments.has_petsc, "--petsc", arguments.petsc, from.petsc);
   compare(arguments.has_end_time, "--t-end", arguments.end_time, from.end_time);
+  if (arguments.has_frames && from.frames == 0) {
+    throw InputError(fmt::format("--frames: found {}, expected none as in the checkpoint \"{}\"",
+                                 arguments.frames, arguments.continued));
+  }
   compare(arguments.has_frames, "--frames", arguments.frames, static_cast<std::int64_t>(from.frames));
   if (const auto* fixed = std::get_if<FixedStep>(&from.control)) {
     if (arguments.has_relative || arguments.has_absolute) {
@@ -201,6 +205,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
   arguments.has_petsc = !from.petsc.empty();
   arguments.end_time = from.end_time;
   arguments.frames = static_cast<std::int64_t>(from.frames);
+  arguments.has_frames = from.frames != 0;  // 0: the default
   if (arguments.output.empty()) arguments.output = from.output;
   if (const std::string here = program_name(); here != from.program) {
     fmt::print(
@@ -245,7 +250,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (!std::isfinite(arguments.end_time) || arguments.end_time <= 0.0) {
     throw InputError(fmt::format("--t-end: found {}, expected a finite number > 0", arguments.end_time));
   }
-  if (arguments.frames < 2 || arguments.frames > largest_frame_count) {
+  if (arguments.has_frames && (arguments.frames < 2 || arguments.frames > largest_frame_count)) {
     throw InputError(fmt::format("--frames: found {}, expected an integer from 2 to {}", arguments.frames,
                                  largest_frame_count));
   }
@@ -280,11 +285,13 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   tell_of_short_last_step(control, count, arguments.end_time);
 
   const std::atomic<bool>& interrupted = install_interrupt_flag();
-  const auto wanted = static_cast<std::uint64_t>(arguments.frames);
-  const std::uint64_t expected =
-      std::holds_alternative<FixedStep>(control) ? std::min(wanted, count.total() + 1) : wanted;
+  std::optional<std::uint64_t> wanted;
+  if (arguments.has_frames) wanted = static_cast<std::uint64_t>(arguments.frames);
+  const record::FramePlan plan(ivp.t0, ivp.t1, control, wanted);
   store::TrajectoryWriter writer(arguments.output, header, system->model(), store::quantities_of(*system),
-                                 static_cast<Index>(expected));
+                                 static_cast<Index>(plan.count()));
+  const record::FrameOrigin origin = plan.origin(integrator->info(), *ivp.system);
+  writer.describe_frames(origin);
   SolveOptions options{.stop = StopToken(interrupted)};
   std::optional<CheckpointWriter> checkpoints;
   if (!arguments.checkpoint.empty()) {
@@ -297,13 +304,13 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
                                           .output = arguments.output,
                                           .control = control,
                                           .end_time = arguments.end_time,
-                                          .frames = wanted,
+                                          .frames = wanted.value_or(0),
                                           .time = from ? from->time : ivp.t0},
                         options.stop, writer);
     options.checkpoints = &*checkpoints;
   }
   record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
-  record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
+  record::FrameSelector frames(plan, sink);
   SimulationObserver observer(frames, arguments.end_time);
   study::EnergyWatch watch(study::EnergyGauge(*system), observer);
   if (from) {
@@ -320,7 +327,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   solution.status = watch.judged(solution.status);
   writer.finish(solution.status, solution.work);
   if (arguments.xdmf) store::write_xdmf(arguments.output);
-  print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
+  print_summary(arguments.output, solution, frames.written(), origin,
+                system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
     fmt::print(stderr, "federwerk: {}; what was computed is in {}{}\n", solution.status.describe(),
                arguments.output,
@@ -359,8 +367,10 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::Option* end_time =
       command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->type_name("T");
   CLI::Option* frames =
-      command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
-          ->capture_default_str()
+      command
+          ->add_option("--frames", arguments->frames,
+                       "States to store from start to end inclusive; default: 101, of a fixed step about as "
+                       "many at equal spacing")
           ->type_name("N");
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
       ->type_name("FILE.h5");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -18,6 +19,11 @@ int order_on(const MethodInfo& info, const OdeSystem& system) {
   const SecondOrderSystem* mechanics = system.second_order();
   const bool has_velocity_forces = mechanics != nullptr && mechanics->force_class() == ForceClass::velocity;
   return has_velocity_forces ? info.order_with_velocity_forces : info.order;
+}
+
+int dense_order_on(const MethodInfo& info, const OdeSystem& system) {
+  const int order = order_on(info, system);
+  return info.dense_output == DenseOutput::cubic_hermite ? std::min(order, 3) : order;
 }
 
 Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer& observer,

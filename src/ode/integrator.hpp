@@ -8,6 +8,7 @@
 #include "core/status.hpp"
 #include "core/work.hpp"
 #include "ode/capabilities.hpp"
+#include "ode/dense_output.hpp"
 #include "ode/ivp.hpp"
 #include "ode/observer.hpp"
 #include "ode/solve_options.hpp"
@@ -38,8 +39,9 @@ struct MethodInfo {
   /// A step depends on more than (t, y), an acceleration for example: a single step says little of the
   /// scheme.
   bool carries_more_than_state = false;
-  int embedded_order = 0;         ///< order of the solution that the error estimate compares with; 0: none
-  bool is_symplectic = false;     ///< for forces f(t, q) that have a potential
+  int embedded_order = 0;  ///< order of the solution that the error estimate compares with; 0: none
+  DenseOutput dense_output = DenseOutput::cubic_hermite;  ///< how states inside a step come about
+  bool is_symplectic = false;                             ///< for forces f(t, q) that have a potential
   bool is_symmetric = false;      ///< equal to its adjoint: reversible in time where the problem is
   bool conserves_energy = false;  ///< of systems without damping, exactly
   bool is_a_stable = false;
@@ -57,6 +59,10 @@ std::string why_not_applicable(const MethodInfo& info, const OdeSystem& system);
 /// The order that a scheme claims on this system: `order_with_velocity_forces` where forces depend on
 /// velocity, else `order`.
 int order_on(const MethodInfo& info, const OdeSystem& system);
+
+/// The order that dense output claims on this system, with a local error of O(h^{order+1}): that of the
+/// scheme, under cubic Hermite polynomials 3 at most; 0: that of the step, which varies.
+int dense_order_on(const MethodInfo& info, const OdeSystem& system);
 
 /// Solves `ivp` in binary128 with `steps` constant steps and gives the end state. For orders that double
 /// cannot show.

@@ -14,7 +14,8 @@ struct StepView {
   double time = 0.0;        ///< t_n [s]
   ConstVectorRef state;     ///< y_n
   bool last = false;        ///< the end time is reached
-  /// Dense output: writes y(t) for t in [t_{n−1}, t_n]; empty where the scheme has none.
+  /// Dense output (`MethodInfo::dense_output`): writes y(t) for t in [t_{n−1}, t_n], NaN where the scheme
+  /// cannot reach t; empty at the start. May cost right-hand sides, which `Work` counts.
   const std::function<void(double t, VectorRef out)>& interpolate;
 };
 

@@ -5,21 +5,89 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "core/error.hpp"
+#include "core/work_counters.hpp"
 #include "integrators/loop/run_loop.hpp"
+#include "integrators/loop/side_steps.hpp"
 #include "integrators/loop/stepper.hpp"
 
 namespace fw::oracles {
 
 namespace {
 
+/// A second solver of the same library for states inside a step: one constant step to each, or a run with the
+/// tolerances where the library takes no constant steps. Made when the first state is asked for.
+class SideSolver {
+ public:
+  SideSolver(const MethodInfo& info, const ForeignStepperFactory& make_stepper, const Ivp& ivp,
+             const StepControl& for_library)
+      : make_stepper_(make_stepper), ivp_(ivp), control_(for_library) {
+    if (info.dense_output == DenseOutput::side_steps) control_ = FixedStep{.step = ivp.t1 - ivp.t0};
+    tries_whole_ = info.dense_output == DenseOutput::side_runs && !info.is_multistep;
+  }
+
+  Status reach(double t, double t_end, ConstVectorRef y, VectorRef out) {
+    start(t, t_end, y);
+    out = y;
+    for (int steps = 0; t < t_end; ++steps) {
+      if (steps == most_steps) return {StatusCode::step_limit, "too many steps inside a step"};
+      if (Status status = stepper_->advance(t_end, t, out); !status.ok()) return status;
+    }
+    return {};
+  }
+
+  /// Adds what it has evaluated and solved. Steps are those of the run: its own are not counted.
+  void collect_work(Work& work) const {
+    Work done = work_;
+    if (stepper_) stepper_->collect_work(done);
+    done.accepted_steps = done.rejected_steps = 0;
+    for (const WorkCounter& counter : work_counters) work.*counter.count += done.*counter.count;
+  }
+
+ private:
+  static constexpr int most_steps = 10'000;
+
+  /// A method without history may well reach the end in one step: the first that it tries.
+  void start(double t, double t_end, ConstVectorRef y) {
+    if (tries_whole_) {
+      if (stepper_) stepper_->collect_work(work_);
+      ivp_.t0 = t;
+      ivp_.y0 = y;
+      std::get<AdaptiveStep>(control_).initial_step = t_end - t;
+      stepper_ = make_stepper_(ivp_, control_, work_);
+    } else {
+      if (!stepper_) stepper_ = make_stepper_(ivp_, control_, work_);
+      stepper_->restart(t, y);
+    }
+  }
+
+  const ForeignStepperFactory& make_stepper_;
+  Ivp ivp_;
+  StepControl control_;
+  Work work_;
+  bool tries_whole_ = false;
+  std::unique_ptr<ForeignStepper> stepper_;
+};
+
 /// The steps of a library. They have to end at each multiple of a constant step, or at the end time only.
 class ForeignSteps final : public integrators::StepSource {
  public:
-  ForeignSteps(const MethodInfo& info, const Ivp& ivp, const StepControl& control,
-               std::unique_ptr<ForeignStepper> stepper)
-      : info_(info), start_(ivp.t0), end_(ivp.t1), stepper_(std::move(stepper)) {
+  /// `for_library` is `control` with the tolerances that the library gets.
+  ForeignSteps(const MethodInfo& info, const ForeignStepperFactory& make_stepper, const Ivp& ivp,
+               const StepControl& control, const StepControl& for_library, Work& work)
+      : info_(info),
+        start_(ivp.t0),
+        end_(ivp.t1),
+        stepper_(make_stepper(ivp, for_library, work)),
+        side_(info, make_stepper, ivp, for_library),
+        inside_(
+            *ivp.system, 0,
+            [this](double t, double t_end, ConstVectorRef y, VectorRef out) {
+              return side_.reach(t, t_end, y, out);
+            },
+            work) {
     if (const auto* fixed = std::get_if<FixedStep>(&control)) {
       step_ = fixed->step;
       total_ = integrators::count_steps_of(info, ivp, *fixed).total();
@@ -47,15 +115,30 @@ class ForeignSteps final : public integrators::StepSource {
     return {};
   }
 
-  void accept(const integrators::LoopStep&) override {}
-  bool has_dense_output() const override { return stepper_->has_dense_output(); }
-  void interpolate(double t, VectorRef out) override { stepper_->interpolate(t, out); }
+  void accept(const integrators::LoopStep& step) override {
+    step_start_ = step.start;
+    step_end_ = step.end;
+  }
+  bool has_dense_output() const override { return info_.dense_output != DenseOutput::cubic_hermite; }
+  void set_ends(ConstVectorRef start, ConstVectorRef end) override {
+    inside_.set_step(step_start_, step_end_, start, end);
+  }
+  void interpolate(double t, VectorRef out) override {
+    if (info_.dense_output == DenseOutput::library) {
+      stepper_->interpolate(t, out);
+    } else {
+      inside_(t, out);
+    }
+  }
   void restart(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
   void serialise(StateArchive&) override {
     throw InputError(
         fmt::format("method \"{}\" cannot be saved: the library does not give out its memory", info_.name));
   }
-  void collect_work(Work& work) const override { stepper_->collect_work(work); }
+  void collect_work(Work& work) const override {
+    stepper_->collect_work(work);
+    side_.collect_work(work);
+  }
 
  private:
   const MethodInfo& info_;
@@ -63,6 +146,9 @@ class ForeignSteps final : public integrators::StepSource {
   double step_ = 0.0;  ///< 0: the library chooses
   std::uint64_t total_ = 0;
   std::unique_ptr<ForeignStepper> stepper_;
+  SideSolver side_;
+  integrators::SideSteps inside_;
+  double step_start_ = 0.0, step_end_ = 0.0;  ///< of the step accepted last
 };
 
 StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, const StepControl& control) {
@@ -87,6 +173,10 @@ StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, con
 
 }  // namespace
 
+void ForeignStepper::interpolate(double, VectorRef) {
+  throw std::logic_error("the library has no interpolant that is used");
+}
+
 Solution OracleIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
                                     const SolveOptions& options) const {
   const StepControl given_to_library = checked(info_, scaling_, control);
@@ -96,8 +186,7 @@ Solution OracleIntegrator::do_solve(const Ivp& ivp, const StepControl& control, 
   return integrators::run_loop(
       info_, ivp,
       [&](Work& work) -> std::unique_ptr<integrators::StepSource> {
-        return std::make_unique<ForeignSteps>(info_, ivp, control,
-                                              make_stepper_(ivp, given_to_library, work));
+        return std::make_unique<ForeignSteps>(info_, make_stepper_, ivp, control, given_to_library, work);
       },
       observer, options,
       tolerances != nullptr ? tolerances->maximum_steps : std::numeric_limits<std::uint64_t>::max());

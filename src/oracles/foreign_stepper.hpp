@@ -19,11 +19,9 @@ class ForeignStepper {
   /// last good ones.
   virtual Status advance(double limit, double& t, VectorRef y) = 0;
 
-  /// Whether `interpolate` is the solver's own; otherwise the loop uses cubic Hermite polynomials.
-  virtual bool has_dense_output() const = 0;
-
-  /// y(t) inside the last step.
-  virtual void interpolate(double t, VectorRef out) = 0;
+  /// y(t) inside the last step by the library's interpolant; called where `MethodInfo::dense_output` is
+  /// `DenseOutput::library` only.
+  virtual void interpolate(double t, VectorRef out);
 
   /// The state is y at t, which no step has led to: the library's memory starts anew from it, as a new run
   /// does. What it has counted so far stays counted.
@@ -47,7 +45,8 @@ struct ToleranceScaling {
 };
 
 /// A foreign solver behind the interface of our own schemes: checks of the step control are the same for all
-/// of them, and the time loop is that of our own schemes. The memory of a library cannot be saved: a run with
+/// of them, and the time loop is that of our own schemes. Side steps and side runs inside a step are those of
+/// a second solver of the same library, so that the run's own sequence of steps stays what it is. The memory of a library cannot be saved: a run with
 /// checkpoints is refused.
 class OracleIntegrator final : public Integrator {
  public:

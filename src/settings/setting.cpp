@@ -215,7 +215,8 @@ SettingInfo Setting::quick_info() const {
 TomlValue Setting::quick_default() const {
   const std::optional<TomlValue> full = value();
   if (!full) throw std::logic_error("a setting without a value has no default in [quick]: " + info_.name);
-  if (info_.quick.kind == QuickRule::Kind::same) return *full;
+  // A word in the place of an integer has no size.
+  if (info_.quick.kind == QuickRule::Kind::same || std::holds_alternative<std::string>(*full)) return *full;
   if (info_.quick.kind == QuickRule::Kind::fixed) return info_.quick.bound;
   return std::min(std::get<std::int64_t>(*full), info_.quick.bound);
 }

@@ -31,6 +31,8 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   line("title", text_of(attributes, "title"));
   line("status", text_of(attributes, "status"));
   line("solver", text_of(attributes, "solver_status"));
+  const std::string frames = text_of(attributes, "frame_origin");  // not in files of older versions
+  if (!frames.empty()) line("frames", frames + "; spacing " + text_of(attributes, "frame_spacing"));
   line("created", text_of(attributes, "created"));
   line("command", text_of(attributes, "command_line"));
   line("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""));
@@ -43,12 +45,14 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
 }
 
 /// Whether a column is left out of the table for people: `case` repeats problem and method, and what ends in
-/// _position or _velocity details a column without that ending (its essence is in `reason`).
+/// _position or _velocity details a column without that ending (its essence is in `reason`). Long words on how
+/// frames came about would push the reason off the screen; it tells what is unusual.
 bool is_detail(const record::Column& column, const std::vector<record::Column>& columns) {
   const auto has = [&](std::string_view name) {
     return std::any_of(columns.begin(), columns.end(),
                        [&](const record::Column& other) { return other.name == name; });
   };
+  if (column.name == "frame_origin" || column.name == "frame_spacing") return true;
   if (column.name == "case") return has("problem") && has("method") && !has("step");
   for (std::string_view ending : {"_position", "_velocity"}) {
     if (column.name.ends_with(ending) && has(column.name.substr(0, column.name.size() - ending.size())))

@@ -131,6 +131,15 @@ TrajectoryWriter::~TrajectoryWriter() {
   datasets_.reset();
 }
 
+void TrajectoryWriter::describe_frames(const record::FrameOrigin& origin) {
+  const LibraryLock lock;
+  Datasets& d = *datasets_;
+  d.file.guarded([&] {
+    write_attribute(d.file.id(), "frame_origin", origin.states);
+    write_attribute(d.file.id(), "frame_spacing", origin.spacing);
+  });
+}
+
 void TrajectoryWriter::frame(double time, ConstVectorRef state) {
   if (!datasets_ || !datasets_->file.is_open())
     throw InputError("the trajectory is finished; no frame can be added");

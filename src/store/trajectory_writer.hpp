@@ -10,6 +10,7 @@
 #include "core/status.hpp"
 #include "core/work.hpp"
 #include "mechanics/mass_spring_model.hpp"
+#include "record/frame_selector.hpp"
 #include "record/frame_sink.hpp"
 #include "store/file_header.hpp"
 
@@ -39,6 +40,9 @@ class TrajectoryWriter final : public record::FrameSink {
                    const mechanics::MassSpringModel& model, FrameQuantities quantities,
                    Index expected_frames);
   ~TrajectoryWriter() override;
+
+  /// Says in the attributes `frame_origin` and `frame_spacing` how the frames come about. Throws SystemError.
+  void describe_frames(const record::FrameOrigin& origin);
 
   /// Appends a frame; `state` has 6n entries. Throws SystemError (disk full), InputError (wrong size, or the
   /// writer is finished).

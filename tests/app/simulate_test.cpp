@@ -57,7 +57,7 @@ TEST_F(Simulate, StoresTheFramesNearestToAnEqualSpacing) {
       simulate("a.h5", {"--method", "rk4", "--step", "0.01", "--t-end", "1", "--frames", "8"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
-  EXPECT_THAT(result.out, HasSubstr("a.h5: 8 frames"));
+  EXPECT_THAT(result.out, HasSubstr("a.h5: 8 frames, unevenly spaced, to t = 1 s"));
   EXPECT_THAT(scratch_.names(), ElementsAre("a.h5", "s.toml"));
   inspect(R"(
 t = f['trajectory/time'][()]
@@ -67,6 +67,7 @@ assert np.array_equal(t[:-1], k[:-1] * 0.01), t
 assert np.array_equal(f['trajectory/position'][0], [[0.1, 0.2, 0.3], [1, 0, 0], [1.5, 0.5, 0]])
 assert np.array_equal(f['trajectory/velocity'][0], [[0, 0, 0], [0, 1, 0], [0, 0, 1]])
 assert f.attrs['status'] == 'complete' and f.attrs['solver_status'] == 'success'
+assert f.attrs['frame_origin'] == 'ends of steps' and f.attrs['frame_spacing'] == 'uneven'
 assert f.attrs['title'] == 'pendulum' and 'simulate s.toml' in f.attrs['command_line']
 assert f['counters/accepted_steps'][()] == 100 and f['counters/rhs_evaluations'][()] == 400
 )",
@@ -143,6 +144,18 @@ TEST_F(Simulate, TakesASingleStepShorterThanAsked) {
           {file("a.h5"), file("b.h5")});
 }
 
+TEST_F(Simulate, SpacesFramesEvenlyWhereNoNumberIsAskedFor) {
+  const ProcessResult result = simulate("a.h5", {"--method", "rk4", "--step", "0.004", "--t-end", "1"});
+  EXPECT_THAT(result.out, HasSubstr("a.h5: 126 frames to t = 1 s"));
+  inspect(R"(
+t = f['trajectory/time'][()]
+assert np.array_equal(t[:-1], np.arange(0, 250, 2) * 0.004) and t[-1] == 1, t
+assert f.attrs['frame_origin'] == 'ends of steps' and f.attrs['frame_spacing'] == 'even'
+)",
+          {file("a.h5")});
+  EXPECT_THAT(run(scratch_.path(), {"show", "a.h5"}).out, HasSubstr("frames    ends of steps; spacing even"));
+}
+
 TEST_F(Simulate, InterpolatesEquallySpacedFramesOfAnAdaptiveMethod) {
   const Words adaptive = {"--method", "sundials:cvode_bdf", "--rtol", "1e-9", "--atol", "1e-12", "--t-end",
                           "1"};
@@ -158,6 +171,7 @@ assert len(t) == 41 and t[0] == 0 and t[-1] == 1
 assert np.allclose(t, np.linspace(0, 1, 41), rtol=0, atol=1e-15)
 d = np.abs(f['trajectory/position'][()] - g['trajectory/position'][()])
 assert d.max() < 1e-6, d.max()
+assert f.attrs['frame_origin'] == "dense output: the library's interpolant" and f.attrs['frame_spacing'] == 'even'
 )",
           {file("a.h5"), file("b.h5")});
 }

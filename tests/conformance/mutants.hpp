@@ -79,8 +79,6 @@ class SpoiledStepper final : public integrators::AdaptiveStepper {
   void accept() override { stepper_->accept(); }
   void restart(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
   void serialise(StateArchive& archive) override { stepper_->serialise(archive); }
-  bool has_dense_output() const override { return stepper_->has_dense_output(); }
-  void interpolate(double theta, VectorRef out) override { stepper_->interpolate(theta, out); }
 
  private:
   std::unique_ptr<integrators::AdaptiveStepper> stepper_;

@@ -256,6 +256,12 @@ inline std::vector<SeededBug> wrong_algorithms() {
         });
       },
       {"dense output"}));
+  for (const char* name : {"dormand_prince_853", "rodas4"}) {
+    bugs.push_back(code_bug(std::string(name) + "_cubic_dense_output",
+                            "cubic Hermite polynomials in place of side steps", name,
+                            [name] { return with_cubic_dense_output(right_scheme(name)); },
+                            {"dense output", "frames against the end"}));
+  }
   return bugs;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "conformance/seeded_bug.hpp"
+#include "integrators/loop/hermite_interpolant.hpp"
 #include "schemes/butcher_tableau.hpp"
 #include "schemes/multistep_formula.hpp"
 
@@ -248,8 +249,6 @@ class HandWrittenPair final : public integrators::AdaptiveStepper {
     archive.visit("slopes", k_);
     archive.visit("first slope is known", has_first_slope_);
   }
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override { throw std::logic_error("no dense output of its own"); }
 
  private:
   schemes::TableauValues<double> t_;
@@ -290,5 +289,38 @@ class StraightLineObserver final : public Observer {
   double time_ = 0.0;
   Vector state_{};
 };
+
+/// The cubic Hermite polynomial in place of dense output.
+class CubicObserver final : public Observer {
+ public:
+  CubicObserver(const OdeSystem& system, Observer& observer) : cubic_(system, work_), observer_(observer) {}
+  bool observe(const StepView& view) override {
+    const Vector state = view.state;
+    if (view.index > 0) cubic_.set_step(time_, view.time, state_, state);
+    const std::function<void(double, VectorRef)> inside = [&](double t, VectorRef out) { cubic_(t, out); };
+    const bool go_on = observer_.observe({view.index, view.time, view.state, view.last, inside});
+    time_ = view.time;
+    state_ = state;
+    return go_on;
+  }
+
+ private:
+  Work work_;
+  integrators::HermiteInterpolant cubic_;
+  Observer& observer_;
+  double time_ = 0.0;
+  Vector state_{};
+};
+
+/// A scheme of the catalogue with cubic polynomials in place of its dense output.
+inline std::unique_ptr<Integrator> with_cubic_dense_output(std::unique_ptr<Integrator> method) {
+  const std::shared_ptr<const Integrator> right = std::move(method);
+  return std::make_unique<ClaimingIntegrator>(
+      right->info(), right->extended_solver(),
+      [right](const Ivp& ivp, const StepControl& control, Observer& observer) {
+        CubicObserver cubic(*ivp.system, observer);
+        return right->solve(ivp, control, cubic);
+      });
+}
 
 }  // namespace fw::conformance

@@ -65,6 +65,7 @@ inline FileHeader header() {
 inline void write_trajectory(const std::filesystem::path& path, int n, int frames,
                              const Status& status = {StatusCode::success, ""}) {
   TrajectoryWriter writer(path, header(), chain(n), known_quantities, frames);
+  writer.describe_frames({"ends of steps", "even"});
   for (int f = 0; f < frames; ++f) writer.frame(0.5 * f, known_state(n, f));
   Work work;
   work.rhs_evaluations = 4000000001ULL;

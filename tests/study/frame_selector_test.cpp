@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
@@ -22,13 +23,15 @@ class Frames final : public record::FrameSink {
   std::vector<Vector> states;
 };
 
-Frames frames_of(const Integrator& integrator, const StepControl& control, std::uint64_t count, double end) {
+Frames frames_of(const Integrator& integrator, const StepControl& control, std::optional<std::uint64_t> count,
+                 double end) {
   Problem problem = problems::harmonic_oscillator();
   problem.ivp.t1 = end;
   Frames frames;
-  record::FrameSelector selector(0.0, end, control, count, frames);
+  const record::FramePlan plan(0.0, end, control, count);
+  record::FrameSelector selector(plan, frames);
   EXPECT_TRUE(integrator.solve(problem.ivp, control, selector).status.ok());
-  EXPECT_EQ(selector.written(), selector.expected());
+  EXPECT_EQ(selector.written(), plan.count());
   return frames;
 }
 
@@ -80,9 +83,68 @@ TEST(FrameSelector, InterpolatesAdaptiveRunsAtEqualSpacing) {
   EXPECT_EQ(frames.times.back(), 2.0);
 }
 
+TEST(FrameSelector, SpacesFramesOfConstantStepsEvenlyByDefault) {
+  const auto method = catalog::make_method("velocity_verlet");
+  for (std::uint64_t steps = 1; steps <= 420; ++steps) {
+    const double h = 1.0 / 64.0, end = static_cast<double>(steps) * h;
+    const Frames frames = frames_of(*method, FixedStep{.step = h}, std::nullopt, end);
+    const std::size_t intervals = frames.times.size() - 1;
+    const double spacing = frames.times[1];
+    EXPECT_EQ(frames.times.back(), end);
+    for (std::size_t k = 0; k + 1 < frames.times.size(); ++k) {
+      ASSERT_EQ(frames.times[k], static_cast<double>(k) * spacing) << steps;
+    }
+    const record::FramePlan plan(0.0, end, FixedStep{.step = h}, std::nullopt);
+    const record::FrameOrigin origin =
+        plan.origin(method->info(), *problems::harmonic_oscillator().ivp.system);
+    EXPECT_EQ(origin.states, "ends of steps");
+    const bool is_even = end - frames.times[intervals - 1] == spacing;
+    EXPECT_EQ(origin.spacing, is_even ? "even" : "even but for the last") << steps;
+    const std::size_t least = std::min<std::size_t>(steps, 50),
+                      most = std::max<std::size_t>(std::min<std::size_t>(steps, 100), steps > 100 ? 200 : 0);
+    EXPECT_GE(intervals, steps <= 100 ? steps : least) << steps;
+    EXPECT_LE(intervals, most) << steps;
+  }
+}
+
+TEST(FrameSelector, TakesTheNumberOfIntervalsNearestToAHundred) {
+  const auto intervals = [](std::uint64_t steps) {
+    return record::FramePlan(0.0, static_cast<double>(steps), FixedStep{.step = 1.0}, std::nullopt).count() -
+           1;
+  };
+  EXPECT_EQ(intervals(1000), 100u);
+  EXPECT_EQ(intervals(250), 125u);
+  EXPECT_EQ(intervals(144), 72u);
+  EXPECT_EQ(intervals(2 * 997), 100u);  // of 20 steps each but for the last: neither 2 nor 997 is near
+  EXPECT_EQ(intervals(9007199254740000u), 100u);  // found without a search through all of them
+}
+
+TEST(FrameSelector, SaysHowFramesCameAbout) {
+  const auto origin = [](const std::string& method, const StepControl& control,
+                         std::optional<std::uint64_t> frames) {
+    const record::FrameOrigin found =
+        record::FramePlan(0.0, 1.0, control, frames)
+            .origin(catalog::make_method(method)->info(), *problems::harmonic_oscillator().ivp.system);
+    return found.states + "; " + found.spacing;
+  };
+  const AdaptiveStep tolerances{};
+  EXPECT_EQ(origin("rk4", FixedStep{.step = 0.001}, 301), "ends of steps; uneven");
+  EXPECT_EQ(origin("rk4", FixedStep{.step = 0.001}, 251), "ends of steps; even");
+  EXPECT_EQ(origin("rk4", FixedStep{.step = 0.3}, 101), "ends of steps; even but for the last");
+  EXPECT_EQ(origin("rk4", FixedStep{.step = 0.3}, 3), "ends of steps; uneven");
+  EXPECT_EQ(origin("verner_87", tolerances, 11),
+            "dense output of order 8: polynomials through states of the scheme inside the step; even");
+  EXPECT_EQ(origin("rodas4", tolerances, std::nullopt),
+            "dense output of order 4: side steps of the scheme; even");
+  EXPECT_EQ(origin("bogacki_shampine_32", tolerances, std::nullopt),
+            "dense output of order 3: cubic Hermite polynomials; even");
+  EXPECT_EQ(origin("sundials:cvode_bdf", tolerances, std::nullopt),
+            "dense output: the library's interpolant; even");
+}
+
 TEST(FrameSelector, RefusesFewerThanTwoFrames) {
-  Frames frames;
-  EXPECT_THROW(record::FrameSelector(0.0, 1.0, FixedStep{.step = 0.1}, 1, frames), InputError);
+  EXPECT_THROW(record::FramePlan(0.0, 1.0, FixedStep{.step = 0.1}, 1), InputError);
+  EXPECT_THROW(record::FramePlan(0.0, 1.0, AdaptiveStep{}, 0), InputError);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ const std::vector<VerificationPart>& verification_parts() {
       {"order", verify_order},
       {"error_estimate", verify_error_estimate},
       {"dense_output", verify_dense_output},
+      {"frames", verify_frames},
       {"step_control", verify_step_control},
       {"tolerance_proportionality", verify_tolerance_proportionality},
       {"polynomial_exactness", verify_polynomial_exactness},

@@ -50,9 +50,13 @@ std::vector<PropertyCheck> verify(const SchemeUnderTest& scheme);
 /// masses other than 1, positions and velocities apart; in binary128 for orders that double cannot show.
 /// Where there is a run in binary128, that it is the same scheme as the one in double.
 void verify_order(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
-/// Orders of the error estimate and of dense output, from single steps against certified solutions.
+/// Orders of the error estimate and of dense output, from single steps against certified solutions; of dense
+/// output also the size of its error against that of the step.
 void verify_error_estimate(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 void verify_dense_output(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
+/// Of every method that chooses its steps, foreign ones too: the largest error of 200 frames inside the steps
+/// against the error at the end of the run, on three problems at three tolerances.
+void verify_frames(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);
 /// The shorter last step where the interval is no whole number of steps (multistep schemes have to refuse
 /// it), steps that are rejected and tried again, and that an attempt makes the same step as a constant step.
 void verify_step_control(const SchemeUnderTest& scheme, std::vector<PropertyCheck>& checks);

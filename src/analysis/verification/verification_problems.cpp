@@ -5,6 +5,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "analysis/fit/order_fit.hpp"
+#include "analysis/reference/gragg_extrapolation.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "ode/functor_system.hpp"
 
@@ -175,6 +177,59 @@ ProblemFunction first_applicable(const MethodInfo& info, std::initializer_list<P
   return nullptr;
 }
 
+std::vector<ProblemFunction> applicable_problems(const MethodInfo& info,
+                                                 std::initializer_list<ProblemFunction> problems) {
+  std::vector<ProblemFunction> result;
+  for (const ProblemFunction problem : problems) {
+    if (why_not_applicable(info, *problem().system).empty()) result.push_back(problem);
+  }
+  return result;
+}
+
+std::optional<double> local_slope(const std::vector<double>& steps, const std::vector<double>& values,
+                                  double floor) {
+  const OrderFit fit = fit_finest_order(steps, values, floor, 0.15);
+  if (!fit.valid) return std::nullopt;
+  return fit.order;
+}
+
+double logarithmic_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = std::log(x[i]), v = std::log(std::max(y[i], 1e-300));
+    sx += u;
+    sy += v;
+    sxx += u * u;
+    sxy += u * v;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+double relative_error(ConstVectorRef y, const std::vector<Float128>& exact) {
+  double error = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    const double difference = std::abs(static_cast<double>(Float128(y[static_cast<Index>(i)]) - exact[i]));
+    if (difference > error || std::isnan(difference)) error = difference;  // NaN stays
+    size = std::max(size, std::abs(static_cast<double>(exact[i])));
+  }
+  return error / size;
+}
+
+Ivp ensemble_start(ProblemFunction problem, int member) {
+  Ivp ivp = problem();
+  const SecondOrderSystem* second_order = ivp.system->second_order();
+  for (Index i = 0; i < ivp.y0.size(); ++i) {
+    const bool fixed =
+        second_order != nullptr &&
+        second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
+    // Multiples of 1/64, exact in binary.
+    if (!fixed)
+      ivp.y0[i] += 0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
+  }
+  return ivp;
+}
+
 namespace {
 
 struct CertifiedProblem {
@@ -209,20 +264,7 @@ class CertifiedProblems {
 
 const CertifiedProblem& member_of(ProblemFunction problem, int member) {
   static CertifiedProblems<std::pair<ProblemFunction, int>> problems;
-  return problems.get({problem, member}, [&] {
-    Ivp ivp = problem();
-    const SecondOrderSystem* second_order = ivp.system->second_order();
-    for (Index i = 0; i < ivp.y0.size(); ++i) {
-      const bool fixed =
-          second_order != nullptr &&
-          second_order->fixed()[static_cast<std::size_t>(i % second_order->degrees_of_freedom())] != 0;
-      // Multiples of 1/64, exact in binary.
-      if (!fixed)
-        ivp.y0[i] +=
-            0.015625 * static_cast<double>((member * (5 * i + 3)) % 13 - 6) * (member > 0 ? 1.0 : 0.0);
-    }
-    return ivp;
-  });
+  return problems.get({problem, member}, [&] { return ensemble_start(problem, member); });
 }
 
 const CertifiedProblem& lengthened_problem(ProblemFunction problem, double length) {
@@ -250,6 +292,29 @@ const Ivp& lengthened(ProblemFunction problem, double length) {
 
 const ReferenceState& certified_end_of_lengthened(ProblemFunction problem, double length) {
   return lengthened_problem(problem, length).end;
+}
+
+const FrameReference& certified_frames(ProblemFunction problem) {
+  constexpr int count = 200;
+  constexpr double length = 4.0;
+  static std::mutex mutex;
+  static std::map<ProblemFunction, FrameReference> known;
+  const std::lock_guard lock(mutex);
+  const auto found = known.find(problem);
+  if (found != known.end()) return found->second;
+  FrameReference reference{problem(), {}, {}};
+  reference.ivp.t1 = reference.ivp.t0 + length;
+  for (int k = 1; k <= count; ++k) {
+    reference.times.push_back(k == count ? reference.ivp.t1 : reference.ivp.t0 + length * k / count);
+  }
+  ExtrapolationRun run = integrate_by_extrapolation(
+      reference.ivp, reference.times,
+      {.tableau = harmonic_extrapolation(8), .tolerance = 1e-20, .least_steps = 4});
+  if (!run.status.ok()) {
+    throw std::logic_error("the reference of a verification problem failed: " + run.status.describe());
+  }
+  reference.states = std::move(run.states);
+  return known.emplace(problem, std::move(reference)).first->second;
 }
 
 }  // namespace fw::analysis

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "integrators/loop/initial_step.hpp"
 #include "integrators/loop/run_loop.hpp"
+#include "integrators/loop/side_steps.hpp"
 
 namespace fw::integrators {
 
@@ -23,10 +24,14 @@ constexpr int most_failures_in_a_row = 100;
 class AdaptiveSteps final : public StepSource {
  public:
   AdaptiveSteps(const MethodInfo& info, const ControllerOptions& options,
-                std::unique_ptr<AdaptiveStepper> stepper, const Ivp& ivp, const AdaptiveStep& control,
+                const AdaptiveStepperFactory& make_stepper, const Ivp& ivp, const AdaptiveStep& control,
                 bool is_resumed, Work& work)
       : options_(options),
-        stepper_(std::move(stepper)),
+        stepper_(make_stepper(ivp, work)),
+        has_dense_output_(info.dense_output != DenseOutput::cubic_hermite),
+        inside_(*ivp.system, side_step_nodes(info),
+                side_step_of([&make_stepper, &ivp, &work] { return make_stepper(ivp, work); }), work,
+                dynamic_cast<ContinuousExtension*>(stepper_.get())),
         control_(control),
         t1_(ivp.t1),
         work_(work),
@@ -84,10 +89,11 @@ class AdaptiveSteps final : public StepSource {
     h_ = std::min(h_ * controller_.after_acceptance(estimate_), control_.maximum_step);
   }
 
-  bool has_dense_output() const override { return stepper_->has_dense_output(); }
-  void interpolate(double t, VectorRef out) override {
-    stepper_->interpolate((t - start_) / (end_ - start_), out);
+  bool has_dense_output() const override { return has_dense_output_; }
+  void set_ends(ConstVectorRef start, ConstVectorRef end) override {
+    inside_.set_step(start_, end_, start, end);
   }
+  void interpolate(double t, VectorRef out) override { inside_(t, out); }
 
   /// The length of the step to come stays: a projection at each step must not cost a search for it. What the
   /// controller remembers of errors before goes.
@@ -124,6 +130,8 @@ class AdaptiveSteps final : public StepSource {
 
   const ControllerOptions& options_;
   std::unique_ptr<AdaptiveStepper> stepper_;
+  bool has_dense_output_;
+  SideSteps inside_;
   const AdaptiveStep& control_;
   double t1_;
   Work& work_;
@@ -137,6 +145,18 @@ class AdaptiveSteps final : public StepSource {
 };
 
 }  // namespace
+
+AdaptiveIntegrator::AdaptiveIntegrator(MethodInfo info, ControllerOptions options,
+                                       AdaptiveStepperFactory make_stepper, ExtendedSolver extended_solver)
+    : info_(std::move(info)),
+      options_(options),
+      make_stepper_(std::move(make_stepper)),
+      extended_solver_(std::move(extended_solver)) {
+  // Slopes amplify the errors of states where the problem is stiff: implicit schemes go without them.
+  info_.dense_output = !info_.is_explicit ? DenseOutput::side_steps
+                       : info_.order > 3  ? DenseOutput::side_step_polynomial
+                                          : DenseOutput::cubic_hermite;
+}
 
 Solution AdaptiveIntegrator::do_solve(const Ivp& ivp, const StepControl& control, Observer& observer,
                                       const SolveOptions& options) const {
@@ -153,7 +173,7 @@ Solution AdaptiveIntegrator::do_solve(const Ivp& ivp, const StepControl& control
   return run_loop(
       info_, ivp,
       [&](Work& work) -> std::unique_ptr<StepSource> {
-        return std::make_unique<AdaptiveSteps>(info_, options_, make_stepper_(ivp, work), ivp, adaptive,
+        return std::make_unique<AdaptiveSteps>(info_, options_, make_stepper_, ivp, adaptive,
                                                !options.resume.empty(), work);
       },
       observer, options, adaptive.maximum_steps);

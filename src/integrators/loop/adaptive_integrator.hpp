@@ -16,12 +16,10 @@ using AdaptiveStepperFactory = std::function<std::unique_ptr<AdaptiveStepper>(co
 /// tolerances.
 class AdaptiveIntegrator final : public Integrator {
  public:
+  /// Sets `info.dense_output`: polynomials through side steps for explicit schemes of an order above 3, cubic
+  /// Hermite polynomials for other explicit ones, side steps for implicit ones.
   AdaptiveIntegrator(MethodInfo info, ControllerOptions options, AdaptiveStepperFactory make_stepper,
-                     ExtendedSolver extended_solver = {})
-      : info_(std::move(info)),
-        options_(options),
-        make_stepper_(std::move(make_stepper)),
-        extended_solver_(std::move(extended_solver)) {}
+                     ExtendedSolver extended_solver = {});
 
   const MethodInfo& info() const override { return info_; }
   const ExtendedSolver& extended_solver() const override { return extended_solver_; }

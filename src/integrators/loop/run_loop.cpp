@@ -83,8 +83,11 @@ class Loop {
         change = options_.hook->on_accepted(step.end, y_new);
         if (Status status = check_state(y_new, step.end, step.index); !status.ok()) return status;
       }
-      if (!has_dense_output) {
-        hermite.set_step(step.start, step.end, y, options_.hook != nullptr ? as_made : y_new);
+      const ConstVectorRef end = options_.hook != nullptr ? as_made : y_new;
+      if (has_dense_output) {
+        source.set_ends(y, end);
+      } else {
+        hermite.set_step(step.start, step.end, y, end);
       }
       const bool go_on = observer_.observe({steps_, step.end, y_new, step.is_last, interpolate});
       t = step.end;

@@ -37,6 +37,9 @@ class StepSource {
 
   /// Whether `interpolate` is of the scheme; without one the loop interpolates by cubic Hermite polynomials.
   virtual bool has_dense_output() const = 0;
+  /// Of a source with dense output: the states at both ends of the step accepted last, as the method made
+  /// them. They stay where they are until the next attempt.
+  virtual void set_ends(ConstVectorRef start, ConstVectorRef end) = 0;
   /// y(t) inside the step accepted last.
   virtual void interpolate(double t, VectorRef out) = 0;
 

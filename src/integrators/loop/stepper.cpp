@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "integrators/loop/run_loop.hpp"
+#include "integrators/loop/side_steps.hpp"
 
 namespace fw::integrators {
 
@@ -12,14 +13,16 @@ namespace {
 /// Constant steps, numbered from the start of the run.
 class FixedSteps final : public StepSource {
  public:
-  FixedSteps(std::unique_ptr<Stepper> stepper, const Ivp& ivp, double h, const StepCount& count)
-      : stepper_(std::move(stepper)),
-        own_interpolant_(dynamic_cast<AdaptiveStepper*>(stepper_.get())),
+  FixedSteps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp, double h,
+             const StepCount& count, Work& work)
+      : stepper_(make_stepper(ivp, h, work)),
+        has_dense_output_(info.dense_output != DenseOutput::cubic_hermite),
+        inside_(*ivp.system, side_step_nodes(info),
+                side_step_of([&make_stepper, &ivp, h, &work] { return make_stepper(ivp, h, work); }), work,
+                dynamic_cast<ContinuousExtension*>(stepper_.get())),
         t0_(ivp.t0),
         h_(h),
-        count_(count) {
-    if (own_interpolant_ != nullptr && !own_interpolant_->has_dense_output()) own_interpolant_ = nullptr;
-  }
+        count_(count) {}
 
   Status propose(LoopStep& step) override {
     const std::uint64_t n = step.index - 1;
@@ -41,11 +44,12 @@ class FixedSteps final : public StepSource {
     return status;
   }
 
-  void accept(const LoopStep&) override {}
-  bool has_dense_output() const override { return own_interpolant_ != nullptr; }
-  void interpolate(double t, VectorRef out) override {
-    own_interpolant_->interpolate((t - start_) / length_, out);
+  void accept(const LoopStep& step) override { end_ = step.end; }
+  bool has_dense_output() const override { return has_dense_output_; }
+  void set_ends(ConstVectorRef start, ConstVectorRef end) override {
+    inside_.set_step(start_, end_, start, end);
   }
+  void interpolate(double t, VectorRef out) override { inside_(t, out); }
   void restart(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
   void serialise(StateArchive& archive) override {
     archive.require_equal("step", h_);
@@ -57,10 +61,11 @@ class FixedSteps final : public StepSource {
 
  private:
   std::unique_ptr<Stepper> stepper_;
-  AdaptiveStepper* own_interpolant_;  ///< null: none
+  bool has_dense_output_;
+  SideSteps inside_;
   double t0_, h_;
   StepCount count_;
-  double start_ = 0.0, length_ = 0.0;  ///< of the present step
+  double start_ = 0.0, end_ = 0.0, length_ = 0.0;  ///< of the present step
 };
 
 }  // namespace
@@ -77,7 +82,7 @@ Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_step
   return run_loop(
       info, ivp,
       [&](Work& work) -> std::unique_ptr<StepSource> {
-        return std::make_unique<FixedSteps>(make_stepper(ivp, control.step, work), ivp, control.step, count);
+        return std::make_unique<FixedSteps>(info, make_stepper, ivp, control.step, count, work);
       },
       observer, options);
 }

@@ -37,13 +37,6 @@ class AdaptiveStepper : public Stepper {
 
   /// The last attempt has become the state: what it knows of the end (FSAL) serves the next step.
   virtual void accept() = 0;
-
-  /// Whether the scheme has a dense output of its own; without one the loop interpolates by cubic Hermite
-  /// polynomials.
-  virtual bool has_dense_output() const = 0;
-
-  /// y(t + θh), θ ∈ [0, 1], of the step accepted last.
-  virtual void interpolate(double theta, VectorRef out) = 0;
 };
 
 /// Makes the state of a run: allocates all work space and evaluates what the first step needs. `h` is the
@@ -80,8 +73,7 @@ class FixedStepIntegrator final : public Integrator {
 StepCount count_steps_of(const MethodInfo& info, const Ivp& ivp, const FixedStep& control);
 
 /// Every step of `control` with the stepper that `make_stepper` makes, t_n = t₀ + n·h. Inside a step the
-/// observer can interpolate by the stepper's dense output or the cubic Hermite polynomial (slopes at both
-/// ends, which `Work` counts).
+/// observer can interpolate as `info.dense_output` says; what that evaluates `Work` counts.
 Solution run_fixed_steps(const MethodInfo& info, const StepperFactory& make_stepper, const Ivp& ivp,
                          const FixedStep& control, Observer& observer, const SolveOptions& options);
 

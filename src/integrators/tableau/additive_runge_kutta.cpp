@@ -85,10 +85,6 @@ class AdditiveStepper final : public AdaptiveStepper {
   }
 
   void accept() override {}
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override {
-    throw std::logic_error("additive schemes have no dense output of their own");
-  }
 
  private:
   Status solve_stages(double t, double h, ConstVectorRef y) {

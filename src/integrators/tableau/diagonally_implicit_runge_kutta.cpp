@@ -78,11 +78,6 @@ class DiagonallyImplicitStepper final : public AdaptiveStepper {
     stages_->serialise(archive);
   }
 
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override {
-    throw std::logic_error("diagonally implicit schemes have no dense output of their own");
-  }
-
  private:
   Status solve_stages(double t, double h, ConstVectorRef y) {
     const auto s = static_cast<std::size_t>(tableau_.stages);

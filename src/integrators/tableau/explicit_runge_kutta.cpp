@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "integrators/loop/adaptive_integrator.hpp"
+#include "integrators/loop/continuous_extension.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "integrators/tableau/linear_combination.hpp"
 #include "integrators/tableau/tableau_info.hpp"
@@ -17,7 +18,7 @@ namespace {
 using schemes::ButcherTableau;
 using schemes::TableauValues;
 
-class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
+class ExplicitRungeKuttaStepper final : public AdaptiveStepper, public ContinuousExtension {
  public:
   ExplicitRungeKuttaStepper(const TableauValues<double>& tableau, bool first_same_as_last, const Ivp& ivp,
                             Work& work)
@@ -27,9 +28,8 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
         work_(work),
         slopes_(static_cast<std::size_t>(tableau.stages), Vector::Zero(ivp.y0.size())),
         stage_(ivp.y0.size()),
-        start_(Vector::Zero(tableau.dense.empty() ? 0 : ivp.y0.size())),
         error_weights_(tableau.b),
-        dense_weights_(tableau.b.size()) {
+        dense_weights_(tableau.dense.size()) {
     for (std::size_t i = 0; i < tableau.b_embedded.size(); ++i) error_weights_[i] -= tableau.b_embedded[i];
     if (tableau.b_embedded.empty()) std::fill(error_weights_.begin(), error_weights_.end(), 0.0);
     refresh_pointers();
@@ -37,13 +37,11 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
 
   Status step(double t, double h, VectorRef y) override {
     evaluate_stages(t, h, y);
-    if (start_.size() > 0) start_ = y;
     if (first_same_as_last_) {
       y = stage_;
     } else {
       combine(y, h, tableau_.b, y);
     }
-    step_ = h;
     accept();
     return {};
   }
@@ -57,36 +55,32 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
     }
     linear_combination<double>(zero(error), h, error_weights_.data(), pointers_.data(), error_weights_.size(),
                                error.data(), static_cast<std::size_t>(error.size()));
-    if (start_.size() > 0) start_ = y;
-    step_ = h;
     return {};
   }
 
   void accept() override {
-    // Dense output needs the slopes of this step until the next one begins.
+    // The continuous extension needs the slopes of this step until the next one begins.
     has_first_slope_ = false;
     advance_slope_ = first_same_as_last_;
   }
 
   void restart(double, ConstVectorRef) override { has_first_slope_ = advance_slope_ = false; }
   void serialise(StateArchive& archive) override {
-    archive.visit("slopes", slopes_);  // all of them: dense output of the step before needs them
-    archive.visit("start", start_);
-    archive.visit("step", step_);
+    archive.visit("slopes", slopes_);
     archive.visit("first slope is known", has_first_slope_);
     archive.visit("last slope is the next first", advance_slope_);
   }
 
-  bool has_dense_output() const override { return start_.size() > 0; }
+  bool has_continuous_weights() const override { return !tableau_.dense.empty(); }
 
-  void interpolate(double theta, VectorRef out) override {
+  void extend(double theta, double h, ConstVectorRef start, VectorRef out) override {
     for (std::size_t i = 0; i < dense_weights_.size(); ++i) {
       double value = 0.0;
       const std::vector<double>& polynomial = tableau_.dense[i];
       for (std::size_t k = polynomial.size(); k-- > 0;) value = (value + polynomial[k]) * theta;
       dense_weights_[i] = value;
     }
-    combine(start_, step_, dense_weights_, out);
+    combine(start, h, dense_weights_, out);
   }
 
  private:
@@ -135,9 +129,7 @@ class ExplicitRungeKuttaStepper final : public AdaptiveStepper {
   std::vector<Vector> slopes_;
   std::vector<const double*> pointers_{};
   Vector stage_;
-  Vector start_;  ///< y at the start of the step, kept where the tableau has dense output
   std::vector<double> error_weights_, dense_weights_;
-  double step_ = 0.0;
   bool has_first_slope_ = false;  ///< slopes_.front() is f at the start of the step to come
   bool advance_slope_ = false;    ///< slopes_.back() is f at the start of the step to come
 };

@@ -157,9 +157,6 @@ class NystromStepper final : public AdaptiveStepper {
     archive.visit("first acceleration is known", has_first_);
   }
 
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override {}
-
  private:
   void evaluate(double t, double h, ConstVectorRef y) {
     const Index n = inverse_mass_.size();

@@ -123,10 +123,6 @@ class RosenbrockStepper final : public AdaptiveStepper {
   void serialise(StateArchive& archive) override { shift_->serialise(archive); }
 
   void accept() override {}
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override {
-    throw std::logic_error("Rosenbrock schemes have no dense output of their own");
-  }
 
  private:
   Status solve_stages(double t, double h, ConstVectorRef y) {

@@ -177,9 +177,6 @@ class OdeivStepper final : public ForeignStepper {
     gsl_odeiv2_driver_reset_hstart(driver_.get(), step_);
   }
 
-  bool has_dense_output() const override { return false; }
-  void interpolate(double, VectorRef) override {}
-
   void collect_work(Work& work) const override { work.rejected_steps += driver_->e->failed_steps; }
 
  private:
@@ -292,6 +289,7 @@ const std::vector<GslStepper>& gsl_steppers() {
 std::unique_ptr<Integrator> make_gsl_stepper(const std::string& name, const GslOptions& options) {
   for (const Stepper& stepper : steppers()) {
     if (stepper.known.name != name) continue;
+    const bool has_history = stepper.order == 0 && name != "bsimp";
     MethodInfo info{.name = "gsl:" + name,
                     .title = fmt::format("GSL, {}", stepper.title),
                     .family = "oracle",
@@ -299,9 +297,10 @@ std::unique_ptr<Integrator> make_gsl_stepper(const std::string& name, const GslO
                     .order_with_velocity_forces = stepper.order,
                     .stages = stepper.stages,
                     .is_explicit = stepper.is_explicit,
-                    .is_multistep = stepper.order == 0 && name != "bsimp",
+                    .is_multistep = has_history,
                     .is_adaptive = true,
                     .has_fixed_step = stepper.has_fixed_step,
+                    .dense_output = stepper.has_fixed_step ? DenseOutput::side_steps : DenseOutput::side_runs,
                     .is_symplectic = stepper.is_symplectic,
                     .is_symmetric = stepper.is_symplectic,
                     .is_a_stable = stepper.is_a_stable,

@@ -36,6 +36,7 @@ MethodInfo info_of(const std::string& name, const std::string& title, int order)
           .is_explicit = false,
           .is_adaptive = true,
           .has_fixed_step = true,
+          .dense_output = DenseOutput::side_steps,
           .reference = "[Abhyankar et al. 2018]"};
 }
 
@@ -106,6 +107,7 @@ std::unique_ptr<Integrator> make_ts_bdf(const TsBdfOptions& options) {
                             std::min(options.order, 2));
   info.formula = "sum_j alpha_j y_(n+1-j) = h f(t_(n+1), y_(n+1)) on variable steps";
   info.is_multistep = true;
+  info.dense_output = DenseOutput::library;
   info.is_a_stable = info.is_l_stable = options.order <= 2;
   return make(std::move(info),
               {.type = TSBDF,
@@ -170,6 +172,7 @@ std::unique_ptr<Integrator> make_ts_alpha2(const TsAlpha2Options& options) {
   info.formula = "M a_(n+alpha_m) = f(t_(n+alpha_f), q_(n+alpha_f), v_(n+alpha_f)), Newmark's q and v";
   info.needs = {Capability::second_order};
   info.carries_more_than_state = true;
+  info.dense_output = DenseOutput::cubic_hermite;  // a side step would start from the wrong acceleration
   info.is_a_stable = true;
   info.is_l_stable = options.rho_infinity == 0.0;
   info.is_symplectic = info.is_symmetric = options.rho_infinity == 1.0;  // alpha_m = alpha_f = 1/2: midpoint

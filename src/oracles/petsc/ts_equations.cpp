@@ -145,6 +145,12 @@ void TsEquations::attach(TS stepper) {
   }
 }
 
+void TsEquations::interpolate(TS ts, double t, VectorRef y) {
+  if (!inside_) petsc_check(VecDuplicate(state_, inside_.out()));
+  petsc_check(TSInterpolate(ts, t, inside_));
+  y = (*VectorView(inside_)).head(y.size());
+}
+
 void TsEquations::copy_state(VectorRef y) const {
   if (form_ == TsForm::second_order) {
     y.head(y.size() / 2) = *VectorView(state_);

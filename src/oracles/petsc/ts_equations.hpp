@@ -32,6 +32,8 @@ class TsEquations {
 
   /// y as the stepper has it.
   void copy_state(VectorRef y) const;
+  /// Writes what TS interpolates at time t into y; not of the form `second_order`.
+  void interpolate(TS ts, double t, VectorRef y);
 
   /// Throws what a callback has thrown since the last time.
   void rethrow();
@@ -79,6 +81,7 @@ class TsEquations {
   std::vector<int> time_place_;  ///< of the column ∂/∂t in `matrix_`, autonomous form
   std::unique_ptr<linalg::PetscMatrix> petsc_matrix_;
   linalg::PetscVec state_, velocity_;
+  linalg::PetscVec inside_;  ///< of a step; made when it is first asked for
   linalg::PetscIndexSet positions_, momenta_;
   Vector time_derivative_, other_slope_, shifted_;
   std::exception_ptr exception_;

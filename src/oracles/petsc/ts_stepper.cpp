@@ -253,8 +253,9 @@ Status TsStepper::failure(TSConvergedReason reason, double t) {
   return {code, message};
 }
 
-void TsStepper::interpolate(double, VectorRef) {
-  throw std::logic_error("no dense output of its own");
+void TsStepper::interpolate(double t, VectorRef out) {
+  const PetscSession session(&text_);
+  equations_->interpolate(stepper_, t, out);
 }
 
 void TsStepper::collect_work(Work& work) const {

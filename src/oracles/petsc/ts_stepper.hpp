@@ -26,8 +26,7 @@ class TsStepper final : public ForeignStepper {
   TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work);
 
   Status advance(double limit, double& t, VectorRef y) override;
-  /// The order of TSInterpolate differs from type to type: the loop's Hermite polynomials serve all alike.
-  bool has_dense_output() const override { return false; }
+  /// TSInterpolate: of TSBDF of the order of the step, of other types of lower orders, which differ.
   void interpolate(double t, VectorRef out) override;
   /// A new TS: what each type of it keeps from step to step is its own affair.
   void restart(double t, ConstVectorRef y) override;

@@ -28,10 +28,8 @@ class ArkodeStepper final : public ForeignStepper {
         accuracy_{options.newton_tolerance, options.newton_coefficient},
         check_stall_(ivp.t0),
         state_(ivp.y0),
-        dense_(ivp.y0.size()),
         context_(make_context()),
         state_vector_(wrap_eigen_vector(state_, context_.get())),
-        dense_vector_(wrap_eigen_vector(dense_, context_.get())),
         ark_(ivp.t0, state_vector_.get(), explicit_part(tables, *ivp.system),
              implicit_part(tables, *ivp.system), tables, report_, work, context_.get()) {
     if (is_adaptive_) {
@@ -75,13 +73,6 @@ class ArkodeStepper final : public ForeignStepper {
     check_stall_ = StallCheck(t);
   }
 
-  bool has_dense_output() const override { return true; }
-  void interpolate(double t, VectorRef out) override {
-    const int flag = ARKStepGetDky(ark_.get(), t, 0, dense_vector_.get());
-    report_.guard.rethrow();
-    require(flag, "ARKStepGetDky");
-    out = dense_;
-  }
   void collect_work(Work& work) const override { ark_.collect_work(work); }
 
  private:
@@ -101,9 +92,9 @@ class ArkodeStepper final : public ForeignStepper {
   StageAccuracy accuracy_;
   RunReport report_;
   StallCheck check_stall_;
-  Vector state_, dense_;
+  Vector state_;
   ContextPointer context_;
-  VectorPointer state_vector_, dense_vector_;
+  VectorPointer state_vector_;
   ArkStepMemory ark_;
 };
 
@@ -128,6 +119,7 @@ std::unique_ptr<Integrator> make_arkode(std::string name, std::string title, Ark
                   .is_explicit = !tables.implicit_part,
                   .is_adaptive = tables.embedded_order > 0,
                   .embedded_order = tables.embedded_order,
+                  .dense_output = DenseOutput::side_steps,
                   .needs = is_additive ? Capabilities{Capability::second_order, Capability::force_splitting}
                                        : Capabilities{},
                   .formula = is_additive

@@ -50,11 +50,9 @@ class MriStepper final : public ForeignStepper {
         inner_tolerance_(options.inner_tolerance),
         time_(ivp.t0),
         state_(ivp.y0),
-        dense_(ivp.y0.size()),
         slow_{make_soft_right_hand_part(*ivp.system->second_order()), ivp.y0.size(), report_, work},
         context_(make_context()),
         state_vector_(wrap_eigen_vector(state_, context_.get())),
-        dense_vector_(wrap_eigen_vector(dense_, context_.get())),
         inner_(ivp.t0, state_vector_.get(), fast_part(ivp, !options.inner_is_implicit),
                fast_part(ivp, options.inner_is_implicit), tables, report_, work, context_.get()),
         inner_stepper_(inner_stepper(inner_.get())),
@@ -98,13 +96,6 @@ class MriStepper final : public ForeignStepper {
     report_ = {};
   }
 
-  bool has_dense_output() const override { return true; }
-  void interpolate(double t, VectorRef out) override {
-    const int flag = MRIStepGetDky(memory_.get(), t, 0, dense_vector_.get());
-    report_.guard.rethrow();
-    require(flag, "MRIStepGetDky");
-    out = dense_;
-  }
   void collect_work(Work& work) const override { inner_.collect_work(work); }
 
  private:
@@ -143,10 +134,10 @@ class MriStepper final : public ForeignStepper {
   double inner_tolerance_;
   double time_;  ///< as ARKODE has it
   RunReport report_;
-  Vector state_, dense_;
+  Vector state_;
   SlowPart slow_;
   ContextPointer context_;
-  VectorPointer state_vector_, dense_vector_;
+  VectorPointer state_vector_;
   ArkStepMemory inner_;
   InnerStepperPointer inner_stepper_;
   MriStepPointer memory_;
@@ -175,6 +166,7 @@ std::unique_ptr<Integrator> make_arkode_mri(const MriOptions& options) {
       .order_with_velocity_forces = coupling->q,
       .stages = coupling->stages - 1,
       .is_explicit = !options.inner_is_implicit,
+      .dense_output = DenseOutput::side_steps,
       .needs = {Capability::second_order, Capability::force_splitting},
       .formula = "v' = f_stiff(t, v) + sum_j w_ij((t - t_n)/h) f_soft(y_j) between the stages",
       .reference = "[Sandu 2019; Reynolds et al. 2023]"};

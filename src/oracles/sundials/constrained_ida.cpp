@@ -87,7 +87,6 @@ class ConstrainedStepper final : public ForeignStepper {
                  Vector::Zero(y.size() + 2 * constraints_.size()));
     start_ = ida_.correct_initial_values(end_);
   }
-  bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { ida_.interpolate(t, out); }
   void collect_work(Work& work) const override { ida_.collect_work(work); }
 
@@ -122,6 +121,7 @@ MethodInfo constrained_info() {
           .is_multistep = true,
           .is_adaptive = true,
           .has_fixed_step = false,
+          .dense_output = DenseOutput::library,
           .needs = {Capability::second_order},
           .formula = "M q' = M v + G^T mu, M v' = f + G^T lambda, g(q) = 0, G v = 0",
           .reference = "[Gear, Gupta, Leimkuhler 1985; Hindmarsh et al. 2005]"};

@@ -42,6 +42,7 @@ MethodInfo cvode_info(CvodeFormula formula, const CvodeOptions& options) {
           .is_multistep = true,
           .is_adaptive = true,
           .has_fixed_step = false,
+          .dense_output = DenseOutput::library,
           .formula = is_bdf
                          ? "backward differentiation formulas of orders 1-5, steps and order chosen by error"
                          : "Adams-Moulton formulas of orders 1-12, steps and order chosen by error",

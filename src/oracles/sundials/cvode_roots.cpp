@@ -120,7 +120,6 @@ class RootStepper final : public ForeignStepper {
     }
     return {};
   }
-  bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
   void restart(double t, ConstVectorRef y) override { session_.restart(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }

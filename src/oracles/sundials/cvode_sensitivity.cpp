@@ -133,7 +133,6 @@ class SensitivityStepper final : public ForeignStepper {
     if (status.ok() && t >= end_) result_ = session_.sensitivities();
     return status;
   }
-  bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
   void restart(double t, ConstVectorRef y) override { session_.restart_with_sensitivities(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }

@@ -93,7 +93,6 @@ class CvodeStepper final : public ForeignStepper {
       : session_(formula, options, ivp, std::get<AdaptiveStep>(control), work) {}
 
   Status advance(double limit, double& t, VectorRef y) override { return session_.advance(limit, t, y); }
-  bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { session_.interpolate(t, out); }
   void restart(double t, ConstVectorRef y) override { session_.restart(t, y); }
   void collect_work(Work& work) const override { session_.collect_work(work); }

@@ -22,7 +22,6 @@ class IdaStepper final : public ForeignStepper {
     return status;
   }
   void restart(double t, ConstVectorRef y) override { ida_.restart(t, y, slope(t, y)); }
-  bool has_dense_output() const override { return true; }
   void interpolate(double t, VectorRef out) override { ida_.interpolate(t, out); }
   void collect_work(Work& work) const override { ida_.collect_work(work); }
 
@@ -52,6 +51,7 @@ std::unique_ptr<Integrator> make_ida(const IdaOptions& options) {
                   .is_multistep = true,
                   .is_adaptive = true,
                   .has_fixed_step = false,
+                  .dense_output = DenseOutput::library,
                   .formula = "backward differentiation formulas of orders 1-5 on q' - v = 0, M v' - f = 0",
                   .reference = "[Hindmarsh et al. 2005]"};
   return std::make_unique<OracleIntegrator>(

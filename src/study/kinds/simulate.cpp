@@ -58,6 +58,7 @@ struct SimulateRow {
   double end_time = std::numeric_limits<double>::quiet_NaN();
   double end_error = std::numeric_limits<double>::quiet_NaN();
   Status status{};
+  std::string frame_origin{}, frame_spacing{};
 };
 
 void declare(SummaryRow& a, const SimulateRow& row) {
@@ -67,14 +68,19 @@ void declare(SummaryRow& a, const SimulateRow& row) {
   a("end_time", "s", row.end_time, "where the run ended; NaN of the vector field");
   a("end_error", "SI", row.end_error, "‖y − exact‖₂ at the end; NaN without closed form or end");
   a("status", "", to_string(row.status.code), "`success`, or code of why the solver stopped");
+  a("frame_origin", "", row.frame_origin,
+    "how the states of frames came about: `ends of steps`, or `dense output of order p: …`");
+  a("frame_spacing", "", row.frame_spacing,
+    "of frames in time: `even`, `even but for the last`, or `uneven`");
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
-                          const StepControl& control, std::uint64_t frames, std::int64_t construction,
-                          const RunContext& context) {
+                          const StepControl& control, std::optional<std::uint64_t> frames,
+                          std::int64_t construction, const RunContext& context) {
   const Ivp& ivp = entry.problem.ivp;
   FrameColumns columns;
-  record::FrameSelector selector(ivp.t0, ivp.t1, control, frames, columns);
+  const record::FramePlan plan(ivp.t0, ivp.t1, control, frames);
+  record::FrameSelector selector(plan, columns);
   EnergyWatch watch(EnergyGauge(entry.problem), selector);
   Solution solution = context.solve(integrator, ivp, control, watch);
   const bool reached_end = solution.status.ok();
@@ -87,6 +93,8 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
                    : reached_end        ? Verdict::not_applicable
                                         : Verdict::fails;
   result.reason = solution.status.ok() ? "reached the end" : solution.status.describe();
+  const record::FrameOrigin origin = plan.origin(integrator.info(), *ivp.system);
+  if (origin.spacing == "uneven") result.reason += "; frames are unevenly spaced";
   const auto* fixed = std::get_if<FixedStep>(&control);
   const double step = fixed != nullptr ? fixed->step : std::numeric_limits<double>::quiet_NaN();
   const auto size = static_cast<std::uint64_t>(ivp.system->size());
@@ -116,7 +124,8 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = cells_of(SimulateRow{entry.label, call, step, solution.time, end_error, solution.status});
+  result.summary = cells_of(SimulateRow{entry.label, call, step, solution.time, end_error, solution.status,
+                                        origin.states, origin.spacing});
   return result;
 }
 
@@ -201,7 +210,7 @@ void declare(Archive& a, Tolerances& tolerances) {
 struct SimulateSpec {
   std::vector<std::string> methods;
   std::optional<std::vector<double>> steps;
-  std::int64_t frames = 101;
+  std::int64_t frames = 0;  ///< 0: the default
   std::int64_t construction_steps = 0;
   Tolerances tolerances;
   std::optional<FieldSpec> field;
@@ -217,8 +226,10 @@ void declare(Archive& a, SimulateSpec& spec) {
         .doc("of `verlet*`, the interval has to be a whole number of steps"));
   a(setting("frames", spec.frames)
         .integers(2, 10'000'000)
+        .or_word("auto", 0)
         .quick_at_most(101)
-        .doc("states that are stored, from start to end inclusive"));
+        .doc("states that are stored, from start to end inclusive; `auto`: 101, of constant steps about as "
+             "many at equal spacing"));
   a(setting("construction_steps", spec.construction_steps)
         .integers(0, 1000)
         .doc("of a scalar equation: how so many first steps come about (slopes at both ends, solutions "
@@ -266,7 +277,9 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
   const std::vector<double> steps = study.steps.value_or(std::vector<double>());
   const AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
                               .absolute_tolerance = study.tolerances.absolute};
-  const auto frames = static_cast<std::uint64_t>(study.frames);
+  std::optional<std::uint64_t> frames;
+  if (study.frames > 0) frames = static_cast<std::uint64_t>(study.frames);
+  const std::string frames_text = frames ? std::to_string(*frames) : "auto";
   const std::int64_t construction = study.construction_steps;
 
   std::shared_ptr<const StudyProblem> first;
@@ -290,7 +303,7 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
         plan.cases.push_back(
             {.id = group_name(fmt::format("{}-{}{}", problem->label, call, suffix)),
              .identity = fmt::format("simulate\n{}method = {}\nframes = {}\nconstruction = {}\n{}",
-                                     problem->identity, call, frames, construction, identity),
+                                     problem->identity, call, frames_text, construction, identity),
              .run =
                  [problem, call, integrator, control, frames, construction](const RunContext& context) {
                    return run_trajectory(*problem, call, *integrator, control, frames, construction, context);
