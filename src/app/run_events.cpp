@@ -54,7 +54,8 @@ std::optional<Number> number_in(const std::string& text) {
 
 /// "kinetic", "potential" or a name of the list.
 bool is_energy(const Energies& energies, const std::string& name) {
-  return name == "potential" || std::ranges::any_of(energies.list(), [&](const auto& e) { return e.name == name; });
+  return name == "potential" ||
+         std::ranges::any_of(energies.list(), [&](const auto& e) { return e.name == name; });
 }
 
 double energy_of(const Energies& energies, const std::string& name) {
@@ -75,7 +76,8 @@ double power(const mechanics::MassSpringSystem& system, const std::string& name,
   const double size = std::max(q.lpNorm<Eigen::Infinity>(), 1e-3);
   const double delta = std::cbrt(std::numeric_limits<double>::epsilon()) * size / speed;
   const Vector later = q + delta * v, earlier = q - delta * v;
-  return (energy_of(system.energies(later, v), name) - energy_of(system.energies(earlier, v), name)) / (2.0 * delta);
+  return (energy_of(system.energies(later, v), name) - energy_of(system.energies(earlier, v), name)) /
+         (2.0 * delta);
 }
 
 std::vector<EventFunction> functions_of(const std::vector<EventRequest>& requests,
@@ -84,9 +86,8 @@ std::vector<EventFunction> functions_of(const std::vector<EventRequest>& request
   for (const EventRequest& request : requests) {
     if (request.kind == Kind::energy) {
       list.push_back({.name = request.text,
-                      .value = [&system, name = request.energy](double t, ConstVectorRef y) {
-                        return power(system, name, t, y);
-                      },
+                      .value = [&system, name = request.energy](
+                                   double t, ConstVectorRef y) { return power(system, name, t, y); },
                       .terminal = request.stops});
     }
     if (request.kind != Kind::plane) continue;
@@ -94,9 +95,8 @@ std::vector<EventFunction> functions_of(const std::vector<EventRequest>& request
     const int end = request.index ? first + 1 : static_cast<int>(system.particle_count());
     for (int i = first; i < end; ++i) {
       list.push_back({.name = fmt::format("{}: particle {}", request.text, i),
-                      .value = [n = request.normal, d = request.offset, i](double, ConstVectorRef y) {
-                        return dot(n, load3(y.data(), i)) - d;
-                      },
+                      .value = [n = request.normal, d = request.offset, i](
+                                   double, ConstVectorRef y) { return dot(n, load3(y.data(), i)) - d; },
                       .terminal = request.stops});
     }
   }
@@ -116,7 +116,8 @@ EventRequest parse_event(const std::string& option, const std::string& text,
     if (numbers.size() != 4) refuse(option, text, "expected four numbers NX,NY,NZ,D after \"plane:\"");
     for (std::size_t k = 0; k < 4; ++k) {
       const auto value = number_in<double>(numbers[k]);
-      if (!value || !std::isfinite(*value)) refuse(option, text, fmt::format("expected a number for \"{}\"", numbers[k]));
+      if (!value || !std::isfinite(*value))
+        refuse(option, text, fmt::format("expected a number for \"{}\"", numbers[k]));
       values[k] = *value;
     }
     request.normal = {values[0], values[1], values[2]};
@@ -141,21 +142,23 @@ EventRequest parse_event(const std::string& option, const std::string& text,
     request.index = number_in<int>(parts[next]);
     if (request.kind == Kind::energy || parts.size() > next + 1 || !request.index || *request.index < 0 ||
         *request.index >= count) {
-      refuse(option, text, fmt::format("expected the number of a {} from 0 to {} at the end",
-                                       is_spring ? "spring" : "particle", count - 1));
+      refuse(option, text,
+             fmt::format("expected the number of a {} from 0 to {} at the end",
+                         is_spring ? "spring" : "particle", count - 1));
     }
   }
   const bool needs_switches = request.kind != Kind::plane && request.kind != Kind::energy;
   if (needs_switches && system.switching_surfaces() == nullptr) {
-    throw InputError(fmt::format("{}: found \"{}\", but the scene has no obstacle and no rope (law \"tension_only\")",
-                                 option, text));
+    throw InputError(fmt::format(
+        "{}: found \"{}\", but the scene has no obstacle and no rope (law \"tension_only\")", option, text));
   }
   return request;
 }
 
 }  // namespace
 
-std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at, const std::vector<std::string>& stop_at,
+std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at,
+                                       const std::vector<std::string>& stop_at,
                                        const mechanics::MassSpringSystem& system) {
   std::vector<EventRequest> requests;
   for (const std::string& text : log_at) requests.push_back(parse_event("--log-at", text, system));
@@ -169,13 +172,15 @@ std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at, c
 /// The requests that the system's surfaces tell of.
 class RunEvents::Switches final : public SwitchSink<double> {
  public:
-  Switches(std::vector<EventRequest> requests, Observer& inner) : requests_(std::move(requests)), inner_(inner) {}
+  Switches(std::vector<EventRequest> requests, Observer& inner)
+      : requests_(std::move(requests)), inner_(inner) {}
 
   bool observe(const mechanics::MassSpringSystem& system, const StepView& view) {
     if (view.index > 0 && view.time > time_) {
       const SwitchingSurfaces* surfaces = system.switching_surfaces();
       found_.clear();
-      if (surfaces != nullptr) surfaces->find({time_, view.time - time_, state_.data(), view.state.data()}, *this);
+      if (surfaces != nullptr)
+        surfaces->find({time_, view.time - time_, state_.data(), view.state.data()}, *this);
       std::ranges::stable_sort(found_, {}, &MetEvent::time);
       for (const MetEvent& event : found_) {
         events_.push_back(event);
@@ -197,7 +202,8 @@ class RunEvents::Switches final : public SwitchSink<double> {
                         : request.kind == Kind::taut    ? !is_solid && begins
                                                         : !is_solid && ends;
       if (!fits || (request.index && *request.index != index)) continue;
-      found_.push_back({time_ + found.offset, fmt::format("{}: {}", request.text, place_of(found)), request.stops});
+      found_.push_back(
+          {time_ + found.offset, fmt::format("{}: {}", request.text, place_of(found)), request.stops});
     }
   }
 
@@ -225,7 +231,8 @@ class RunEvents::Switches final : public SwitchSink<double> {
   bool has_stopped_ = false;
 };
 
-RunEvents::RunEvents(std::vector<EventRequest> requests, const mechanics::MassSpringSystem& system, Observer& inner)
+RunEvents::RunEvents(std::vector<EventRequest> requests, const mechanics::MassSpringSystem& system,
+                     Observer& inner)
     : system_(system) {
   auto functions = functions_of(requests, system);
   std::erase_if(requests, [](const auto& r) { return r.kind == Kind::plane || r.kind == Kind::energy; });

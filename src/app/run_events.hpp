@@ -19,17 +19,18 @@ namespace fw::app {
 ///   energy:NAME                an extremum of the energy of that name, or of `potential`
 struct EventRequest {
   enum class Kind { contact, release, taut, slack, plane, energy };
-  std::string text;               ///< as it was given
+  std::string text;  ///< as it was given
   Kind kind = Kind::contact;
-  std::optional<int> index{};     ///< of the particle or the spring; none: any
-  Vec3<double> normal{};          ///< of the plane
-  double offset = 0.0;            ///< D
+  std::optional<int> index{};  ///< of the particle or the spring; none: any
+  Vec3<double> normal{};       ///< of the plane
+  double offset = 0.0;         ///< D
   std::string energy{};
-  bool stops = false;             ///< ends the run
+  bool stops = false;  ///< ends the run
 };
 
 /// Reads those of --log-at and --stop-at. Throws InputError that names the option and shows the forms, or the index that is out of range.
-std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at, const std::vector<std::string>& stop_at,
+std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at,
+                                       const std::vector<std::string>& stop_at,
                                        const mechanics::MassSpringSystem& system);
 
 /// An event that was met.

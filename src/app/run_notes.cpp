@@ -7,8 +7,8 @@
 
 namespace fw::app {
 
-store::RunNotes tell(const Solution& solution, const RunEvents* events, const std::optional<std::string>& stopped_at,
-                     bool has_stops) {
+store::RunNotes tell(const Solution& solution, const RunEvents* events,
+                     const std::optional<std::string>& stopped_at, bool has_stops) {
   store::RunNotes notes{.warnings = solution.warnings, .stopped_at = stopped_at.value_or("")};
   for (const std::string& warning : notes.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   if (events == nullptr) return notes;

@@ -26,7 +26,7 @@ class FrameClock final : public record::FrameSink {
 
 /// What the file of a run says besides its numbers; told on the terminal as well: warnings, the events that were met,
 /// and the one that stopped it. `events` null: none were asked for; `has_stops`: one was to stop it.
-store::RunNotes tell(const Solution& solution, const RunEvents* events, const std::optional<std::string>& stopped_at,
-                     bool has_stops);
+store::RunNotes tell(const Solution& solution, const RunEvents* events,
+                     const std::optional<std::string>& stopped_at, bool has_stops);
 
 }  // namespace fw::app

@@ -202,7 +202,8 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     }
     compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
     compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
-    compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step, adaptive.maximum_step);
+    compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step,
+            adaptive.maximum_step);
     arguments.maximum_step = adaptive.maximum_step;
     arguments.relative_tolerance = adaptive.relative_tolerance;
     arguments.absolute_tolerance = adaptive.absolute_tolerance;
@@ -289,7 +290,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   ivp.system = system;
   std::vector<EventRequest> requests = parse_events(arguments.log_at, arguments.stop_at, *system);
   if (!requests.empty() && (!arguments.checkpoint.empty() || from)) {
-    throw InputError("found events and a checkpoint: --log-at and --stop-at do not go with --checkpoint and --continue");
+    throw InputError(
+        "found events and a checkpoint: --log-at and --stop-at do not go with --checkpoint and --continue");
   }
   if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
@@ -344,7 +346,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     if (clock.time() < solution.time) sink.frame(solution.time, solution.state);
   }
   solution.status = watch.judged(solution.status);
-  writer.finish(solution.status, solution.work, tell(solution, events ? &*events : nullptr, stopped_at, !arguments.stop_at.empty()));
+  writer.finish(solution.status, solution.work,
+                tell(solution, events ? &*events : nullptr, stopped_at, !arguments.stop_at.empty()));
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
@@ -388,7 +391,8 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
       ->type_name("EVENT")
       ->allow_extra_args(false);
   command
-      ->add_option("--stop-at", arguments->stop_at, "End the run where this happens first; events as of --log-at")
+      ->add_option("--stop-at", arguments->stop_at,
+                   "End the run where this happens first; events as of --log-at")
       ->type_name("EVENT")
       ->allow_extra_args(false);
   CLI::Option* petsc = command

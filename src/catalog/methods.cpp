@@ -276,8 +276,8 @@ std::pair<MethodCall, std::optional<double>> without_maximum_step(MethodCall cal
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0)) {
-    throw InputError(fmt::format("method \"{}\": {}: found \"{}\", expected a number of seconds > 0", call.name,
-                                 maximum_step_option, text));
+    throw InputError(fmt::format("method \"{}\": {}: found \"{}\", expected a number of seconds > 0",
+                                 call.name, maximum_step_option, text));
   }
   return {std::move(call), value};
 }

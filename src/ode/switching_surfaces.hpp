@@ -14,8 +14,8 @@ namespace fw {
 /// start however wrong the end is.
 template <class Scalar>
 struct StatePath {
-  Scalar start{};             ///< t_n [s]
-  Scalar length{};            ///< h [s], > 0
+  Scalar start{};                ///< t_n [s]
+  Scalar length{};               ///< h [s], > 0
   const Scalar* from = nullptr;  ///< y_n
   const Scalar* to = nullptr;    ///< y_{n+1}
 };
@@ -26,17 +26,17 @@ struct StatePath {
 /// of an obstacle, a slack rope), other numbers for the formulas that it has.
 template <class Scalar>
 struct Switch {
-  Scalar offset{};       ///< time since the start of the step [s], in (0, h]: the first place in the new phase
-  int from = 0;          ///< phase before
-  int to = 0;            ///< phase after
-  int at_end = 0;        ///< phase at the end of the step: differs from `to` where it switches again
-  double jump = 0.0;     ///< bound on the jump of a node's acceleration [m/s²]
-  double rate = 0.0;     ///< bound on the jump of its time derivative [m/s³]
-  double frequency = 0.0;  ///< ω = √(k/m) of the formula after the switch [1/s]; 0: no force
-  double speed = 0.0;    ///< the largest speed of the nodes over the step [m/s]
-  double thickness = 0.0;  ///< of the solid [m]; 0: none, infinite: a half space
-  std::string_view kind{};  ///< of the elements, "obstacles" for example
-  std::size_t number = 0;   ///< of the obstacle or the spring
+  Scalar offset{};    ///< time since the start of the step [s], in (0, h]: the first place in the new phase
+  int from = 0;       ///< phase before
+  int to = 0;         ///< phase after
+  int at_end = 0;     ///< phase at the end of the step: differs from `to` where it switches again
+  double jump = 0.0;  ///< bound on the jump of a node's acceleration [m/s²]
+  double rate = 0.0;  ///< bound on the jump of its time derivative [m/s³]
+  double frequency = 0.0;            ///< ω = √(k/m) of the formula after the switch [1/s]; 0: no force
+  double speed = 0.0;                ///< the largest speed of the nodes over the step [m/s]
+  double thickness = 0.0;            ///< of the solid [m]; 0: none, infinite: a half space
+  std::string_view kind{};           ///< of the elements, "obstacles" for example
+  std::size_t number = 0;            ///< of the obstacle or the spring
   std::array<int, 2> nodes{-1, -1};  ///< particles; the second one is −1 where there is one only
 };
 
@@ -69,7 +69,8 @@ template <class Scalar>
 std::string place_of(const Switch<Scalar>& found) {
   std::string text = std::string(found.kind) + "[" + std::to_string(found.number) + "]";
   if (found.nodes[1] < 0) return text + " and particle " + std::to_string(found.nodes[0]);
-  return text + " between particles " + std::to_string(found.nodes[0]) + " and " + std::to_string(found.nodes[1]);
+  return text + " between particles " + std::to_string(found.nodes[0]) + " and " +
+         std::to_string(found.nodes[1]);
 }
 
 }  // namespace fw

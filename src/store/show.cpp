@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "core/error.hpp"
 #include "store/show_content.hpp"
@@ -31,6 +33,9 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   line("title", text_of(attributes, "title"));
   line("status", text_of(attributes, "status"));
   line("solver", text_of(attributes, "solver_status"));
+  line("stopped", text_of(attributes, "stopped_at"));
+  std::istringstream warnings(text_of(attributes, "warnings"));
+  for (std::string warning; std::getline(warnings, warning);) line("warning", warning);
   line("created", text_of(attributes, "created"));
   line("command", text_of(attributes, "command_line"));
   line("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""));

@@ -86,7 +86,8 @@ void write_notes(hid_t file, const RunNotes& notes) {
   if (!notes.has_events) return;
   const Handle group = make_group(file, "events");
   write_dataset(group, "time", "s", {notes.event_times.size()}, std::span<const double>(notes.event_times));
-  write_dataset(group, "event", "", {notes.event_names.size()}, std::span<const std::string>(notes.event_names));
+  write_dataset(group, "event", "", {notes.event_names.size()},
+                std::span<const std::string>(notes.event_names));
 }
 
 }  // namespace

@@ -36,9 +36,11 @@ constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i';
 /// What a verdict rests on in doubtful runs: how many there were, and what is wrong with the last, which is mostly
 /// the finest.
 std::string doubts_of(const std::vector<std::string>& warnings) {
-  const auto doubtful = std::ranges::count_if(warnings, [](const std::string& text) { return !text.empty(); });
+  const auto doubtful =
+      std::ranges::count_if(warnings, [](const std::string& text) { return !text.empty(); });
   if (doubtful == 0) return "";
-  const auto last = std::find_if(warnings.rbegin(), warnings.rend(), [](const auto& text) { return !text.empty(); });
+  const auto last =
+      std::find_if(warnings.rbegin(), warnings.rend(), [](const auto& text) { return !text.empty(); });
   return fmt::format("; warning of {} of {} runs: {}", doubtful, warnings.size(), *last);
 }
 

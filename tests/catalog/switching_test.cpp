@@ -79,8 +79,8 @@ TEST(Switching, ShapesStiffnessesAndSpeeds) {
             const Wall wall{shape, thickness, stiffness, speed};
             if (!wall.has_closed_form()) continue;
             const Solution found = solve(*method, wall.ivp(), 1e-8);
-            EXPECT_LT(error(wall, found), 3e-6 * speed) << name << ": " << wall.name() << " "
-                                                        << found.status.describe();
+            EXPECT_LT(error(wall, found), 3e-6 * speed)
+                << name << ": " << wall.name() << " " << found.status.describe();
           }
         }
       }
@@ -106,7 +106,8 @@ TEST(Switching, ReferencesKnowOfWalls) {
       const Float128 pi = acos(Float128(-1));
       const Float128 truth = face - speed * (Float128(wall.end) - face / speed - pi / frequency);
       ASSERT_FALSE(wall.is_passed());
-      EXPECT_LE(static_cast<double>(abs(state.value[0] - truth)), static_cast<double>(state.error[0])) << wall.name();
+      EXPECT_LE(static_cast<double>(abs(state.value[0] - truth)), static_cast<double>(state.error[0]))
+          << wall.name();
       EXPECT_LT(static_cast<double>(state.error[0]), 1e-20) << wall.name();
       const auto quick = analysis::binary64_reference(wall.ivp());
       ASSERT_TRUE(quick.status.ok());
@@ -154,11 +155,14 @@ TEST(Switching, DampedImpactsEndWhereThePressureDoes) {
   // δ'' + c δ' + k δ = 0 from δ = 0, δ' = v until k δ + c δ' = 0; then it flies freely.
   const double decay = 0.5 * damping, frequency = std::sqrt(wall.stiffness - decay * decay);
   // δ = v/ω e^{−dt} sin ωt, k δ + c δ' = v/ω e^{−dt} ((k − 2d²) sin ωt + 2dω cos ωt).
-  const double end = (std::numbers::pi - std::atan2(2.0 * decay * frequency, wall.stiffness - 2.0 * decay * decay)) / frequency;
+  const double end =
+      (std::numbers::pi - std::atan2(2.0 * decay * frequency, wall.stiffness - 2.0 * decay * decay)) /
+      frequency;
   const double depth = wall.speed / frequency * std::exp(-decay * end) * std::sin(frequency * end);
   const double speed = wall.speed * std::exp(-decay * end) *
                        (std::cos(frequency * end) - decay / frequency * std::sin(frequency * end));
-  for (const char* name : {"dormand_prince_54", "verner_87", "sundials:cvode_bdf", "sundials:ida", "gsl:rk8pd"}) {
+  for (const char* name :
+       {"dormand_prince_54", "verner_87", "sundials:cvode_bdf", "sundials:ida", "gsl:rk8pd"}) {
     const Solution found = solve(*make_method(name), ivp, 1e-8);
     ASSERT_TRUE(found.status.ok()) << name << ": " << found.status.describe();
     EXPECT_NEAR(found.state[6], speed, 3e-6) << name;

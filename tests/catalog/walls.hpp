@@ -28,9 +28,7 @@ struct Wall {
   /// The box is too soft: the particle passes its middle and is pushed out at the other side.
   bool is_passed() const { return shape == Shape::box && speed / frequency() > 0.5 * thickness; }
   /// A ball that is passed through its centre has no force there.
-  bool has_closed_form() const {
-    return shape != Shape::sphere || speed / frequency() < 0.45 * thickness;
-  }
+  bool has_closed_form() const { return shape != Shape::sphere || speed / frequency() < 0.45 * thickness; }
   double duration() const {
     return is_passed() ? 2.0 * std::asin(0.5 * thickness * frequency() / speed) / frequency()
                        : std::numbers::pi / frequency();

@@ -185,11 +185,13 @@ class Cuts {
   Cuts(const OdeSystem& system, double tolerance, double t0, double t1)
       : surfaces_(system.switching_surfaces()), tolerance_(tolerance), interval_(t1 - t0) {
     if (surfaces_ != nullptr) {
-      cutter_.emplace(0.0, tolerance, 1e4 * epsilon * std::max(std::abs(t0), std::abs(t1)));
+      cutter_.emplace(0.0, tolerance, 1e4 * epsilon * std::max(std::abs(t0), std::abs(t1)), true);
     }
   }
 
-  Float128 limit() const { return cutter_ ? cutter_->limit() : Float128(std::numeric_limits<double>::infinity()); }
+  Float128 limit() const {
+    return cutter_ ? cutter_->limit() : Float128(std::numeric_limits<double>::infinity());
+  }
   Cutter::Verdict judge(const Float128& t, const Float128& H, const State& y, const State& increment,
                         const State& scale) {
     if (!cutter_) return Cutter::Verdict::accepted;
@@ -291,7 +293,8 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
           continue;
         }
         if (verdict == Cutter::Verdict::chatters) {
-          return fail(StatusCode::step_too_small, fmt::format("the right-hand side switches without end, last at {},", cuts.last()));
+          return fail(StatusCode::step_too_small,
+                      fmt::format("the right-hand side switches without end, last at {},", cuts.last()));
         }
         add_compensated(y, carry, tableau.best(attempt.row));
         for (std::size_t i = 0; i < y.size(); ++i) run.scale[i] = std::max(run.scale[i], Float128(abs(y[i])));

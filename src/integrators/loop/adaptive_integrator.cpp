@@ -143,8 +143,8 @@ class AdaptiveSteps final : public StepSource {
   StepSizeController controller_;
   Vector error_;
   double h_;
-  double taken_ = 0.0;   ///< length of the last attempt: h_, or what is left of it
-  bool is_cut_ = false;  ///< it ends where the loop wants it to
+  double taken_ = 0.0;              ///< length of the last attempt: h_, or what is left of it
+  bool is_cut_ = false;             ///< it ends where the loop wants it to
   double start_ = 0.0, end_ = 0.0;  ///< of the step accepted last
   double estimate_ = 0.0;           ///< of the last attempt
   int failures_ = 0;                ///< in a row

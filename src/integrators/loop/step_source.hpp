@@ -13,9 +13,9 @@ namespace fw::integrators {
 
 /// A step on its way through the run loop.
 struct LoopStep {
-  std::uint64_t index = 1;   ///< 1 for the first
-  double start = 0.0;        ///< t_n [s]
-  double end = 0.0;          ///< t_{n+1}; of a library that chooses its steps known after the attempt
+  std::uint64_t index = 1;  ///< 1 for the first
+  double start = 0.0;       ///< t_n [s]
+  double end = 0.0;         ///< t_{n+1}; of a library that chooses its steps known after the attempt
   double limit = std::numeric_limits<double>::infinity();  ///< a step that is chosen does not go beyond it
   bool is_last = false;      ///< ends the run; the loop then sets `end` to the end time
   bool is_accepted = false;  ///< what the attempt came to

@@ -9,8 +9,10 @@ SwitchGuard::SwitchGuard(const Ivp& ivp, const StepSource& source, const SolveOp
   if (const AdaptiveStep* tolerances = source.tolerances(); tolerances == nullptr) {
     warnings_.emplace();
   } else if (options.cut_at_switches) {
+    // Who asks for so many digits wants them, whatever they cost: references do.
+    constexpr double accurate = 1e-9;
     cutter_.emplace(tolerances->absolute_tolerance, tolerances->relative_tolerance,
-                    smallest_switch_width(ivp.t0, ivp.t1));
+                    smallest_switch_width(ivp.t0, ivp.t1), tolerances->relative_tolerance <= accurate);
   }
 }
 

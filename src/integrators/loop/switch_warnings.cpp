@@ -66,15 +66,17 @@ std::vector<std::string> SwitchWarnings::sentences() const {
         "contact of {} at t = {:.6g} s: h sqrt(k/m) is {:.3g}, expected at most {}: the contact lasts "
         "pi sqrt(m/k) = {:.3g} s, the step is {:.3g} s; give a step of at most {:.3g} s, or tolerances to a "
         "method that chooses its steps{}",
-        stiff_.place, stiff_.time, stiff_.frequency * stiff_.step, longest_step, std::numbers::pi / stiff_.frequency,
-        stiff_.step, longest_step / stiff_.frequency, in_all(stiff_.count)));
+        stiff_.place, stiff_.time, stiff_.frequency * stiff_.step, longest_step,
+        std::numbers::pi / stiff_.frequency, stiff_.step, longest_step / stiff_.frequency,
+        in_all(stiff_.count)));
   }
   if (crossed_.count > 0) {
     list.push_back(fmt::format(
         "{} at t = {:.6g} s: the particle enters and leaves the solid within one step: it moves {:.3g} m per "
         "step, the solid is {}; a shorter step or a method that chooses its steps is needed{}",
         crossed_.place, crossed_.time, crossed_.speed * crossed_.step,
-        std::isfinite(crossed_.thickness) ? fmt::format("{:.3g} m thick", crossed_.thickness) : "a half space",
+        std::isfinite(crossed_.thickness) ? fmt::format("{:.3g} m thick", crossed_.thickness)
+                                          : "a half space",
         in_all(crossed_.count)));
   }
   return list;

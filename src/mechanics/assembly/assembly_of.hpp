@@ -56,16 +56,22 @@ class AssemblyOf final : public ElementAssembly {
   }
   void find_switches(const StatePath<double>& path, const std::vector<double>& mass,
                      SwitchSink<double>& sink) const override {
-    for_each_switching_batch([&](const auto& batch) { search_switches(batch, {path, mass, is_fixed_}, sink); });
+    for_each_switching_batch([&](const auto& batch) {
+      search_switches(batch, {path, mass, is_fixed_}, sink);
+    });
   }
   void find_switches(const StatePath<Float128>& path, const std::vector<double>& mass,
                      SwitchSink<Float128>& sink) const override {
-    for_each_switching_batch([&](const auto& batch) { search_switches(batch, {path, mass, is_fixed_}, sink); });
+    for_each_switching_batch([&](const auto& batch) {
+      search_switches(batch, {path, mass, is_fixed_}, sink);
+    });
   }
-  void find_acting(const double* y, const std::vector<double>& mass, SwitchSink<double>& sink) const override {
+  void find_acting(const double* y, const std::vector<double>& mass,
+                   SwitchSink<double>& sink) const override {
     const StatePath<double> standing{0.0, 0.0, y, y};
-    for_each_switching_batch(
-        [&](const auto& batch) { list_acting(batch, {standing, mass, is_fixed_}, sink); });
+    for_each_switching_batch([&](const auto& batch) {
+      list_acting(batch, {standing, mass, is_fixed_}, sink);
+    });
   }
   bool is_internal() const override {
     return !any_of([](const auto& batch) { return !batch.is_internal(); });

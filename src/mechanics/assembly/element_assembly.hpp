@@ -41,7 +41,8 @@ class ElementAssembly : public ForceKernel {
                              SwitchSink<double>& sink) const = 0;
   virtual void find_switches(const StatePath<Float128>& path, const std::vector<double>& mass,
                              SwitchSink<Float128>& sink) const = 0;
-  virtual void find_acting(const double* y, const std::vector<double>& mass, SwitchSink<double>& sink) const = 0;
+  virtual void find_acting(const double* y, const std::vector<double>& mass,
+                           SwitchSink<double>& sink) const = 0;
   /// Whether forces and torques sum to zero: momenta are conserved where no particle is fixed.
   virtual bool is_internal() const = 0;
   /// The nodes of each batch's elements, for a `BlockPattern`.

@@ -116,7 +116,8 @@ std::array<Vec3<double>, N> rounded(const std::array<Vec3<Scalar>, N>& vectors) 
 
 /// The first switch of one element along the path, if any, to `sink`.
 template <class Batch, class Scalar>
-void search_switch(const Batch& batch, std::size_t e, const SwitchQuery<Scalar>& query, SwitchSink<Scalar>& sink) {
+void search_switch(const Batch& batch, std::size_t e, const SwitchQuery<Scalar>& query,
+                   SwitchSink<Scalar>& sink) {
   constexpr auto nodes = static_cast<std::size_t>(Batch::arity);
   const auto index = batch.nodes(e);
   const std::size_t n = 3 * query.mass.size();
@@ -149,8 +150,8 @@ void search_switch(const Batch& batch, std::size_t e, const SwitchQuery<Scalar>&
     change = std::max(change, static_cast<double>(norm(v1[a] - v0[a])));
   }
   const auto relative = static_cast<double>(nodes) * speed;
-  const Kink kink = batch.kink(e, phase, search.phase_after(), rounded(search.x()), rounded(search.v()), relative,
-                               change / static_cast<double>(query.path.length));
+  const Kink kink = batch.kink(e, phase, search.phase_after(), rounded(search.x()), rounded(search.v()),
+                               relative, change / static_cast<double>(query.path.length));
   Switch<Scalar> found{.offset = search.place() * query.path.length,
                        .from = phase,
                        .to = search.phase_after(),

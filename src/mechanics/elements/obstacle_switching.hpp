@@ -51,16 +51,23 @@ int nearest_face(const Box&, const Contact<Scalar>& at) {
 
 /// 0 where the obstacle does not press, otherwise 1 + the number of the face that does.
 template <class Shape, class Scalar>
-int obstacle_phase(const Obstacle& obstacle, const Shape& shape, const Vec3<Scalar>& x, const Vec3<Scalar>& v) {
+int obstacle_phase(const Obstacle& obstacle, const Shape& shape, const Vec3<Scalar>& x,
+                   const Vec3<Scalar>& v) {
   const Contact<Scalar> at = contact(shape, x);
   if (!(at.depth > 0) || !(unclamped_penalty(obstacle, at, v) > 0)) return 0;
   return 1 + nearest_face(shape, at);
 }
 
 /// The sizes of the numbers that depths are differences of [m].
-inline double coordinate_size(const Plane& plane) { return size_of(plane.point); }
-inline double coordinate_size(const Sphere& sphere) { return size_of(sphere.centre) + sphere.radius; }
-inline double coordinate_size(const Box& box) { return std::max(size_of(box.lower), size_of(box.upper)); }
+inline double coordinate_size(const Plane& plane) {
+  return size_of(plane.point);
+}
+inline double coordinate_size(const Sphere& sphere) {
+  return size_of(sphere.centre) + sphere.radius;
+}
+inline double coordinate_size(const Box& box) {
+  return std::max(size_of(box.lower), size_of(box.upper));
+}
 
 /// What rounding leaves of a depth along a path [m].
 template <class Shape, class Scalar>
@@ -88,8 +95,8 @@ auto range_of(const Points& points, Function f) {
 
 /// Whether a flat face with depth in `depth` and leaving speed in `leaving` keeps pressing, or not pressing.
 template <class Scalar>
-bool face_stays(const Obstacle& obstacle, bool presses, const Range<Scalar>& depth, const Range<Scalar>& leaving,
-                const Scalar& rounding) {
+bool face_stays(const Obstacle& obstacle, bool presses, const Range<Scalar>& depth,
+                const Range<Scalar>& leaving, const Scalar& rounding) {
   const Scalar k = obstacle.stiffness, c = obstacle.damping;
   if (presses) return depth.low > -rounding && (c == 0 || k * depth.low - c * leaving.high > 0);
   return depth.high <= rounding || k * depth.high - c * leaving.low <= 0;
@@ -125,15 +132,17 @@ bool obstacle_stays(const Obstacle& obstacle, const Box& box, int phase, const P
   const int pressing = phase - 1;
   for (int face = 0; face < box_faces; ++face) {
     if (face == pressing) continue;
-    const auto ahead = range_of(
-        path.x, [&](const auto& x) { return Scalar(depth_below(box, face, x) - depth_below(box, pressing, x)); });
+    const auto ahead = range_of(path.x, [&](const auto& x) {
+      return Scalar(depth_below(box, face, x) - depth_below(box, pressing, x));
+    });
     if (!(ahead.low >= -rounding)) return false;
   }
   return face_stays(obstacle, true, depth(pressing), leaving(pressing), rounding);
 }
 
 template <class Scalar>
-bool obstacle_stays(const Obstacle& obstacle, const Sphere& sphere, int phase, const PointPath<Scalar>& path) {
+bool obstacle_stays(const Obstacle& obstacle, const Sphere& sphere, int phase,
+                    const PointPath<Scalar>& path) {
   const Vec3<Scalar> centre{Scalar(sphere.centre.x), Scalar(sphere.centre.y), Scalar(sphere.centre.z)};
   const Scalar k = obstacle.stiffness, c = obstacle.damping, radius = sphere.radius;
   const Scalar rounding = depth_rounding(sphere, path);
@@ -156,8 +165,12 @@ bool obstacle_stays(const Obstacle& obstacle, const Sphere& sphere, int phase, c
 }
 
 /// How much room a solid leaves to a particle that crosses it [m].
-inline double solid_thickness(const Plane&) { return std::numeric_limits<double>::infinity(); }
-inline double solid_thickness(const Sphere& sphere) { return 2.0 * sphere.radius; }
+inline double solid_thickness(const Plane&) {
+  return std::numeric_limits<double>::infinity();
+}
+inline double solid_thickness(const Sphere& sphere) {
+  return 2.0 * sphere.radius;
+}
 inline double solid_thickness(const Box& box) {
   return std::min({box.upper.x - box.lower.x, box.upper.y - box.lower.y, box.upper.z - box.lower.z});
 }

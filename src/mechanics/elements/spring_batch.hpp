@@ -84,8 +84,8 @@ struct SpringBatch {
     return rope_stays(parameters(e), phase, path);
   }
   /// A rope has a kink where its tension begins.
-  Kink kink(std::size_t e, int, int to, const NodeVectors<double, 2>&, const NodeVectors<double, 2>&, double speed,
-            double) const {
+  Kink kink(std::size_t e, int, int to, const NodeVectors<double, 2>&, const NodeVectors<double, 2>&,
+            double speed, double) const {
     const double stiffness = rate(e);
     return {.rate = stiffness * speed, .stiffness = to != 0 ? stiffness : 0.0};
   }
