@@ -74,12 +74,13 @@ class SideSolver {
 /// The steps of a library. They have to end at each multiple of a constant step, or at the end time only.
 class ForeignSteps final : public integrators::StepSource {
  public:
-  /// `for_library` is `control` with the tolerances that the library gets.
+  /// `for_library` is `control` with the tolerances that the library gets; it outlives the steps.
   ForeignSteps(const MethodInfo& info, const ForeignStepperFactory& make_stepper, const Ivp& ivp,
                const StepControl& control, const StepControl& for_library, Work& work)
       : info_(info),
         start_(ivp.t0),
         end_(ivp.t1),
+        tolerances_(std::get_if<AdaptiveStep>(&for_library)),
         stepper_(make_stepper(ivp, for_library, work)),
         side_(info, make_stepper, ivp, for_library),
         inside_(
@@ -95,7 +96,11 @@ class ForeignSteps final : public integrators::StepSource {
   }
 
   Status propose(integrators::LoopStep& step) override {
-    step.end = step_ == 0.0 || step.index >= total_ ? end_ : start_ + static_cast<double>(step.index) * step_;
+    if (step_ == 0.0) {
+      step.end = std::min(end_, step.limit);
+    } else {
+      step.end = step.index >= total_ ? end_ : start_ + static_cast<double>(step.index) * step_;
+    }
     return {};
   }
 
@@ -115,6 +120,11 @@ class ForeignSteps final : public integrators::StepSource {
     return {};
   }
 
+  const AdaptiveStep* tolerances() const override { return tolerances_; }
+  /// The library is past it: it starts anew.
+  void take_back(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  /// The limit of the step tells the library.
+  void shorten(double) override {}
   void accept(const integrators::LoopStep& step) override {
     step_start_ = step.start;
     step_end_ = step.end;
@@ -145,6 +155,7 @@ class ForeignSteps final : public integrators::StepSource {
   double start_, end_;
   double step_ = 0.0;  ///< 0: the library chooses
   std::uint64_t total_ = 0;
+  const AdaptiveStep* tolerances_;  ///< null: constant steps
   std::unique_ptr<ForeignStepper> stepper_;
   SideSolver side_;
   integrators::SideSteps inside_;

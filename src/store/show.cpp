@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "core/error.hpp"
 #include "store/show_content.hpp"
@@ -33,6 +35,9 @@ std::string origin(const std::filesystem::path& path, const Attributes& attribut
   line("solver", text_of(attributes, "solver_status"));
   const std::string frames = text_of(attributes, "frame_origin");  // not in files of older versions
   if (!frames.empty()) line("frames", frames + "; spacing " + text_of(attributes, "frame_spacing"));
+  line("stopped", text_of(attributes, "stopped_at"));
+  std::istringstream warnings(text_of(attributes, "warnings"));
+  for (std::string warning; std::getline(warnings, warning);) line("warning", warning);
   line("created", text_of(attributes, "created"));
   line("command", text_of(attributes, "command_line"));
   line("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""));

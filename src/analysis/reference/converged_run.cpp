@@ -29,7 +29,8 @@ class Refinement {
     result_.status = solution.status;
     if (solution.status.code == StatusCode::interrupted) return false;
     if (solution.status.code == StatusCode::step_limit) return false;  // a finer run needs even more
-    if (!solution.status.ok()) {
+    result_.warning = solution.warnings.empty() ? "" : solution.warnings.front();
+    if (!solution.status.ok() || !result_.warning.empty()) {
       previous_difference_ = std::numeric_limits<double>::infinity();
       return true;  // a finer run may succeed
     }

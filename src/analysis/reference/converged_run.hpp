@@ -26,6 +26,7 @@ struct ConvergedRun {
       0.0;                 ///< in the norm given; infinite where fewer than three runs in a row succeeded
   double step = 0.0;       ///< of the finest run [s]; 0 where the method chooses its steps
   double tolerance = 0.0;  ///< relative, of the finest run; 0 with constant steps
+  std::string warning{};   ///< of the last run, which then does not count: see `Solution::warnings`
   Status status;           ///< of the last run: why there is none, or none finer
   Work work;               ///< of the run that `state` comes from
 };
@@ -36,7 +37,7 @@ struct ConvergedRun {
 /// largest of d_k, d_k/(ρ − 1) (which bounds the rest of a geometric series that falls slowly, as under order
 /// reduction) and a fraction of d_{k−1} that no method of its order falls below, so that two runs which are
 /// close by accident do not count as accurate. It takes three runs; one whose tighter tolerance has not led
-/// to more steps does not count as a run.
+/// to more steps does not count as a run, nor does one with warnings.
 ///
 /// `norm` gives the size of a difference of states. `prefers_constant_steps` decides for methods that can do
 /// both. Throws InputError where the method cannot run on the problem.

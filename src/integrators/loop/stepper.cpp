@@ -44,6 +44,9 @@ class FixedSteps final : public StepSource {
     return status;
   }
 
+  const AdaptiveStep* tolerances() const override { return nullptr; }
+  void take_back(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  void shorten(double) override {}
   void accept(const LoopStep& step) override { end_ = step.end; }
   bool has_dense_output() const override { return has_dense_output_; }
   void set_ends(ConstVectorRef start, ConstVectorRef end) override {

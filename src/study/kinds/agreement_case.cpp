@@ -99,8 +99,9 @@ class AgreementCase {
       const std::string why = std::isfinite(row.run.error_estimate)
                                   ? fmt::format("estimate {:.1e} after {} steps", row.run.error_estimate,
                                                 row.run.work.accepted_steps)
-                              : row.run.status.ok() ? "too few runs"
-                                                    : std::string(to_string(row.run.status.code));
+                              : !row.run.warning.empty() ? row.run.warning
+                              : row.run.status.ok()      ? "too few runs"
+                                                         : std::string(to_string(row.run.status.code));
       not_compared_.push_back(fmt::format("{} ({})", row.name, why));
     }
     rows_.push_back(std::move(row));
