@@ -10,9 +10,11 @@
 
 #include "app/checkpoint_writer.hpp"
 #include "app/commands.hpp"
+#include "app/continued_run.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_notes.hpp"
+#include "app/start_state.hpp"
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
@@ -24,21 +26,10 @@
 #include "store/write_target.hpp"
 #include "store/xdmf.hpp"
 #include "study/measure/energy_gauge.hpp"
-#include "system/provenance.hpp"
 
 namespace fw::app {
 
 namespace {
-
-struct SimulateArguments {
-  std::string scene, method, output, petsc, checkpoint, continued;
-  std::vector<std::string> log_at, stop_at;
-  double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
-  double maximum_step = std::numeric_limits<double>::infinity();
-  bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
-  bool has_end_time = false, has_frames = false, has_every = false;
-  std::int64_t frames = record::default_frames;
-};
 
 constexpr std::int64_t largest_frame_count = 1'000'000'000;
 
@@ -161,100 +152,11 @@ std::unique_ptr<Integrator> make_method(const SimulateArguments& arguments) {
   return catalog::make_method(call);
 }
 
-/// The program as a checkpoint names it.
-std::string program_name() {
-  const Provenance here = provenance();
-  return fmt::format("federwerk {} ({}{}, {})", version(), here.git_commit.substr(0, 12),
-                     here.git_dirty ? ", changed" : "", here.compiler);
-}
-
-/// What the user has given beside --continue has to be what the checkpoint was made with; the rest comes from
-/// it.
-void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& arguments) {
-  const auto compare = [&](bool is_given, const char* what, const auto& found, const auto& expected) {
-    if (!is_given || found == expected) return;
-    throw InputError(fmt::format("{}: found {}, expected {} as in the checkpoint \"{}\"", what, found,
-                                 expected, arguments.continued));
-  };
-  if (!arguments.scene.empty() && scene::read_scene(arguments.scene).resolved_toml != from.scene) {
-    throw InputError(
-        fmt::format("scene \"{}\" is not the scene of the checkpoint \"{}\" (\"{}\" at that time)",
-                    arguments.scene, arguments.continued, from.scene_name));
-  }
-  compare(!arguments.method.empty(), "--method", arguments.method, from.method);
-  compare(arguments.has_petsc, "--petsc", arguments.petsc, from.petsc);
-  compare(arguments.has_end_time, "--t-end", arguments.end_time, from.end_time);
-  if (arguments.has_frames && from.frames == 0) {
-    throw InputError(fmt::format("--frames: found {}, expected none as in the checkpoint \"{}\"",
-                                 arguments.frames, arguments.continued));
-  }
-  compare(arguments.has_frames, "--frames", arguments.frames, static_cast<std::int64_t>(from.frames));
-  if (const auto* fixed = std::get_if<FixedStep>(&from.control)) {
-    if (arguments.has_relative || arguments.has_absolute) {
-      throw InputError(fmt::format("found tolerances, expected --step {} as in the checkpoint \"{}\"",
-                                   fixed->step, arguments.continued));
-    }
-    compare(arguments.has_step, "--step", arguments.step, fixed->step);
-    arguments.step = fixed->step;
-    arguments.has_step = true;
-  } else {
-    const auto& adaptive = std::get<AdaptiveStep>(from.control);
-    if (arguments.has_step) {
-      throw InputError(
-          fmt::format("found --step, expected --rtol {} and --atol {} as in the checkpoint \"{}\"",
-                      adaptive.relative_tolerance, adaptive.absolute_tolerance, arguments.continued));
-    }
-    compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
-    compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
-    compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step,
-            adaptive.maximum_step);
-    arguments.maximum_step = adaptive.maximum_step;
-    arguments.relative_tolerance = adaptive.relative_tolerance;
-    arguments.absolute_tolerance = adaptive.absolute_tolerance;
-    arguments.has_relative = arguments.has_absolute = true;
-  }
-  arguments.scene = from.scene_name;
-  arguments.method = from.method;
-  arguments.petsc = from.petsc;
-  arguments.has_petsc = !from.petsc.empty();
-  arguments.end_time = from.end_time;
-  arguments.frames = static_cast<std::int64_t>(from.frames);
-  arguments.has_frames = from.frames != 0;  // 0: the default
-  if (arguments.output.empty()) arguments.output = from.output;
-  if (const std::string here = program_name(); here != from.program) {
-    fmt::print(
-        stderr,
-        "federwerk: note: the checkpoint was written by {}, this is {}; the end may differ in its last "
-        "digits\n",
-        from.program, here);
-  }
-}
-
-void check_checkpoint_options(const SimulateArguments& arguments) {
-  if (arguments.checkpoint.empty() != !arguments.has_every) {
-    throw InputError(arguments.has_every ? "found --every without --checkpoint, expected both"
-                                         : "found --checkpoint without --every, expected both");
-  }
-  if (arguments.checkpoint.empty()) return;
-  if (!std::isfinite(arguments.every) || arguments.every <= 0.0) {
-    throw InputError(fmt::format("--every: found {}, expected a finite number > 0", arguments.every));
-  }
-  store::check_checkpoint_target(arguments.checkpoint);
-}
-
-/// The frames of the run before, into the sink of the one that continues it.
-void repeat_frames(const store::Checkpoint& from, record::FrameSelector& frames, record::FrameSink& sink) {
-  const std::size_t count = from.frame_times.size();
-  const std::size_t size = count == 0 ? 0 : from.frame_states.size() / count;
-  for (std::size_t k = 0; k < count; ++k) {
-    sink.frame(from.frame_times[k],
-               ConstVectorMap(from.frame_states.data() + k * size, static_cast<Index>(size)));
-  }
-  frames.resume(count);
-}
-
 int simulate(SimulateArguments arguments, const std::string& command_line) {
   std::optional<store::Checkpoint> from;
+  if (!arguments.continued.empty() && !arguments.from.empty()) {
+    throw InputError("found --from and --continue, expected one of them");
+  }
   if (!arguments.continued.empty()) {
     from = store::read_checkpoint(arguments.continued);
     take_from_checkpoint(*from, arguments);
@@ -287,12 +189,11 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   const store::FileHeader header{
       .kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
   Ivp ivp;
-  ivp.y0 = initial_state(scene);
   ivp.t1 = arguments.end_time;
-  scene.position.resize(0);
-  scene.velocity.resize(0);
-  const auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
+  const auto system = std::make_shared<const mechanics::MassSpringSystem>(scene.model);
   ivp.system = system;
+  ivp.y0 = from ? first_state(*from, scene) : start_state(scene, *system, arguments.from);
+  scene = {};
   std::vector<EventRequest> requests = parse_events(arguments.log_at, arguments.stop_at, *system);
   if (!requests.empty() && (!arguments.checkpoint.empty() || from)) {
     throw InputError(
@@ -302,6 +203,12 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     throw InputError("the scene is no second-order system");
   }
   tell_of_short_last_step(control, count, arguments.end_time);
+  StepAdvice advice;
+  if (const auto* fixed = std::get_if<FixedStep>(&control);
+      fixed != nullptr && integrator->info().is_explicit) {
+    advice = advise_on_step(arguments.method, fixed->step, *system, ivp.y0);
+    if (!advice.warning.empty()) fmt::print(stderr, "federwerk: warning: {}\n", advice.warning);
+  }
 
   const std::atomic<bool>& interrupted = install_interrupt_flag();
   std::optional<std::uint64_t> wanted;
@@ -358,6 +265,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames.written(), origin,
                 system->degenerate_spring_evaluations());
+  if (!advice.note.empty()) fmt::print("{}\n", advice.note);
   if (!solution.status.ok()) {
     fmt::print(stderr, "federwerk: {}; what was computed is in {}{}\n", solution.status.describe(),
                arguments.output,
@@ -437,6 +345,12 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
           "Go on from a checkpoint, to the same bits as without a stop; scene, method, step, end time "
           "and frames come from it")
       ->type_name("FILE");
+  command
+      ->add_option(
+          "--from", arguments->from,
+          "Start at t = 0 from the last frame of a result file (of \"simulate\" or \"equilibrium\") of a "
+          "system with as many particles")
+      ->type_name("FILE.h5");
   command->callback([=, &action] {
     if (arguments->continued.empty()) {
       for (const CLI::Option* needed : {scene, method, end_time}) {

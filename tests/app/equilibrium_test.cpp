@@ -86,6 +86,62 @@ TEST(Equilibrium, IsWhereAStudyStartsOnRequest) {
   EXPECT_THAT(bad.err, HasSubstr("start: found \"equilibirum\""));
 }
 
+TEST(SimulateFrom, StartsFromTheLastFrameOfAResult) {
+  const store::test::ScratchDirectory scratch;
+  store::test::write_bytes(scratch / "pair.toml", hanging_pair);
+  const auto energy_of = [&](const std::string& file) {
+    const ProcessResult shown = run(scratch.path(), {"show", file, "--json"});
+    return number_of(shown.out, "kinetic_energy_end");
+  };
+  ASSERT_EQ(run(scratch.path(), {"equilibrium", "pair.toml", "-o", "rest.h5"}).exit_code, 0);
+  const ProcessResult result =
+      run(scratch.path(), {"simulate", "pair.toml", "--method", "rk4", "--step", "0.01", "--t-end", "1",
+                           "--from", "rest.h5", "-o", "still.h5"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_LT(energy_of("still.h5"), 1e-20);
+  // The first half of a run and the second from its end are the whole run.
+  const std::vector<std::string> common = {"simulate", "pair.toml", "--method", "rk4", "--step", "0.01"};
+  const auto simulate = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = common;
+    words.insert(words.end(), more.begin(), more.end());
+    const ProcessResult run_result = run(scratch.path(), words);
+    EXPECT_EQ(run_result.exit_code, 0) << run_result.err;
+  };
+  simulate({"--t-end", "1", "-o", "whole.h5"});
+  simulate({"--t-end", "0.5", "-o", "first.h5"});
+  simulate({"--t-end", "0.5", "--from", "first.h5", "-o", "second.h5"});
+  EXPECT_GT(energy_of("whole.h5"), 0.1);
+  EXPECT_NEAR(energy_of("second.h5"), energy_of("whole.h5"), 1e-12);
+
+  store::test::write_bytes(scratch / "one.toml", "[particles]\nposition = [[0,0,0]]\nmass = 1\n");
+  const ProcessResult other = run(scratch.path(), {"simulate", "one.toml", "--method", "rk4", "--step",
+                                                   "0.01", "--t-end", "1", "--from", "rest.h5"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("\"rest.h5\" has 3 particles, expected 1 as in the scene"));
+  const ProcessResult scene = run(scratch.path(), {"simulate", "pair.toml", "--method", "rk4", "--step",
+                                                   "0.01", "--t-end", "1", "--from", "pair.toml"});
+  EXPECT_EQ(scene.exit_code, 2);
+}
+
+TEST(StepAdvice, NamesTheLargestStableStepAndWarnsAboveIt) {
+  const store::test::ScratchDirectory scratch;
+  store::test::write_bytes(scratch / "one.toml",
+                           "[particles]\nposition = [[0,0,0], [1.01,0,0]]\nmass = 1\nfixed = [0]\n[springs]\n"
+                           "between = [[0,1]]\nstiffness = 400\nrest_length = 1\n");
+  const auto simulate = [&](const std::string& method, const std::string& step) {
+    return run(scratch.path(), {"simulate", "one.toml", "--method", method, "--step", step, "--t-end", "0.6",
+                                "-o", method + step + ".h5"});
+  };
+  const ProcessResult good = simulate("velocity_verlet", "0.05");
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_THAT(good.out, HasSubstr("the step is 0.5 of the largest stable one at the start, 0.1 s in theory"));
+  EXPECT_EQ(good.err, "");
+  EXPECT_THAT(simulate("velocity_verlet", "0.12").err,
+              HasSubstr("warning: the step 0.12 s is above the largest stable"));
+  EXPECT_THAT(simulate("explicit_euler", "0.001").out, HasSubstr("an undamped mode grows at every step"));
+  EXPECT_THAT(simulate("implicit_euler", "0.2").out, ::testing::Not(HasSubstr("stable")));
+}
+
 TEST(DescribeScene, TellsMassesSpringsAndStableSteps) {
   const store::test::ScratchDirectory scratch;
   // One mass on a spring of 400 N/m along x: ω = 20 rad/s.

@@ -86,7 +86,7 @@ def promised_files(command):
     words = shlex.split(command, comments=True)
     if "-o" in words[:-1] and words[0].endswith("federwerk"):
         target = words[words.index("-o") + 1]
-        if words[1] == "simulate":
+        if words[1] in ("simulate", "equilibrium"):
             files.add(target)
         elif words[1] == "run":
             files |= {f"{target}/{pathlib.Path(word).stem}.h5" for word in words[2:]
