@@ -8,6 +8,9 @@
 #include "analysis/reference/reference_solution.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/walls.hpp"
+#include "core/error.hpp"
+#include "integrators/loop/switch_cutter.hpp"
+#include "integrators/saved_run.hpp"
 
 namespace fw::catalog {
 namespace {
@@ -183,6 +186,108 @@ TEST(Switching, ConstantStepsAreRightOrWarn) {
   const Solution fine = method->solve(thin.ivp(), FixedStep{.step = 1e-6}, observer);
   EXPECT_TRUE(fine.warnings.empty()) << fine.warnings[0];
   EXPECT_LT(error(thin, fine), 1e-2 * thin.speed);
+}
+
+/// A net of 4 × 4 points that falls flat onto a plate of 2 mm with 20 m/s.
+Ivp falling_net(double spring_damping) {
+  constexpr int n = 4;
+  mechanics::MassSpringModel model;
+  model.gravity = {0.0, 0.0, -9.81};
+  model.mass.assign(n * n, 0.01);
+  model.obstacles = {{mechanics::Box{{-1.0, -1.0, -0.002}, {1.0, 1.0, 0.0}}, 1e7, 0.0}};
+  Ivp ivp;
+  ivp.t1 = 0.02;
+  ivp.y0 = Vector::Zero(6 * n * n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int k = n * i + j;
+      ivp.y0.segment(3 * k, 3) << 0.1 * i, 0.1 * j, 0.1 + 0.003 * std::sin(5.0 * k);
+      ivp.y0[3 * n * n + 3 * k + 2] = -20.0;
+      if (i + 1 < n) model.springs.add(k, k + n, {200.0, spring_damping, 0.1});
+      if (j + 1 < n) model.springs.add(k, k + 1, {200.0, spring_damping, 0.1});
+    }
+  }
+  ivp.system = std::make_shared<const mechanics::MassSpringSystem>(std::move(model));
+  return ivp;
+}
+
+TEST(Switching, ANetDoesNotFallThroughAThinPlate) {
+  const Ivp ivp = falling_net(0.0);
+  const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*ivp.system);
+  const auto energy = [&](const Vector& y) { return system.energies(y.head(48), y.tail(48)).total(); };
+  for (const char* name : {"dormand_prince_54", "dormand_prince_853", "rodasp", "sundials:cvode_adams",
+                           "sundials:arkode_erk", "gsl:rk8pd", "petsc:ts_rk"}) {
+    const Solution found = solve(*make_method(name), ivp, 1e-8);
+    ASSERT_TRUE(found.status.ok()) << name << ": " << found.status.describe();
+    for (Index k = 0; k < 16; ++k) EXPECT_GT(found.state[3 * k + 2], 0.0) << name << ", particle " << k;
+    EXPECT_GE(found.switches, 16u) << name;
+    EXPECT_NEAR(energy(found.state), energy(ivp.y0), 1e-4 * energy(ivp.y0)) << name;
+  }
+}
+
+TEST(Switching, ARunGoesOnFromEveryCheckpointBitForBit) {
+  const Wall wall{};
+  const Ivp ivp = wall.ivp();
+  for (const char* name : {"dormand_prince_54", "verner_87", "esdirk5", "rodasp"}) {
+    const auto method = make_method(name);
+    const AdaptiveStep control{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6};
+    integrators::EveryStep checkpoints;
+    integrators::StepRecord whole;
+    const Solution all = method->solve(ivp, control, whole, {.checkpoints = &checkpoints});
+    ASSERT_TRUE(all.status.ok());
+    ASSERT_GT(checkpoints.saved.size(), 10u);
+    for (const auto& [time, saved] : checkpoints.saved) {
+      integrators::StepRecord rest(time);
+      const Solution anew = method->solve(ivp, control, rest, {.resume = saved});
+      EXPECT_EQ(difference_from_end(whole, rest), "") << name << " from " << time;
+      EXPECT_EQ(anew.switches, all.switches) << name << " from " << time;
+    }
+  }
+}
+
+/// A surface that is crossed in every step, as a sliding mode would.
+class EverySurface final : public SwitchingSurfaces {
+ public:
+  void find(const StatePath<double>& path, SwitchSink<double>& sink) const override {
+    sink.add({.offset = 0.5 * path.length, .to = 1, .at_end = 1, .jump = 1.0, .speed = 1.0, .kind = "test"});
+  }
+  void find(const StatePath<Float128>&, SwitchSink<Float128>&) const override {}
+  void acting(const double*, SwitchSink<double>&) const override {}
+};
+
+TEST(Switching, SwitchesWithoutEndAreTold) {
+  using Cutter = integrators::SwitchCutter<double>;
+  Cutter cutter(1e-9, 1e-9, 1e-12, true);
+  const double y[2] = {0.0, 1.0};
+  double t = 0.0;
+  int steps = 0;
+  for (;; ++steps) {
+    ASSERT_LT(steps, 100'000);
+    const double end = std::min(t + 1e-9, cutter.limit());
+    const Cutter::Verdict verdict = cutter.judge(EverySurface{}, {t, end - t, y, y});
+    if (verdict == Cutter::Verdict::chatters) break;
+    if (verdict == Cutter::Verdict::crossed) t = end;
+  }
+  EXPECT_GT(cutter.crossed(), 1000u);
+}
+
+TEST(Switching, TheLongestStepIsAnOptionOfEveryAdaptiveMethod) {
+  Ivp ivp = falling_net(0.1);
+  ivp.t1 = 0.004;  // before the impact
+  for (const auto& method : adaptive_methods(*ivp.system)) {
+    const std::string name = method->info().name;
+    integrators::StepRecord record;
+    const Solution found =
+        make_method(name + "[maximum_step=1.01e-4]")
+            ->solve(ivp, AdaptiveStep{.relative_tolerance = 1e-2, .absolute_tolerance = 1e-2}, record);
+    ASSERT_TRUE(found.status.ok()) << name << ": " << found.status.describe();
+    for (std::size_t k = 1; k < record.times.size(); ++k) {
+      EXPECT_LE(record.times[k] - record.times[k - 1], 1.0101e-4) << name;
+    }
+  }
+  EXPECT_THROW(make_method("rk4[maximum_step=0.1]"), InputError);
+  EXPECT_THROW(make_method("dormand_prince_54[maximum_step=-1]"), InputError);
+  EXPECT_THROW(make_method("dormand_prince_54[maximum_step=long]"), InputError);
 }
 
 }  // namespace

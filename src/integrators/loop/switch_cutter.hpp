@@ -63,7 +63,7 @@ class SwitchCutter final : public SwitchSink<Scalar> {
     }
     const Scalar width = width_of(first_);
     if (phase_ == Phase::crossing || path.length <= width) {
-      is_at_end_of_patience(end);
+      keep_patience(end, width);
       start_anew(end, first_.frequency);
       return is_out_of_patience_ ? Verdict::chatters : Verdict::crossed;
     }
@@ -116,6 +116,7 @@ class SwitchCutter final : public SwitchSink<Scalar> {
     archive.visit("switches", crossed_);
     archive.visit("resolved kinks to cut", allowance_);
     archive.visit("time of an earlier switch", window_start_);
+    archive.visit("widths of the switches since then", widths_);
   }
 
  private:
@@ -168,18 +169,20 @@ class SwitchCutter final : public SwitchSink<Scalar> {
   }
 
   /// So many switches within hardly more than their own widths are no physics.
-  void is_at_end_of_patience(const Scalar& end) {
+  void keep_patience(const Scalar& end, const Scalar& width) {
     constexpr std::uint64_t window = 1000;
+    widths_ += width;
     if (crossed_++ % window != 0) return;
-    is_out_of_patience_ = crossed_ > window && end - window_start_ <= 4 * window * smallest_width_;
+    is_out_of_patience_ = crossed_ > window && end - window_start_ <= 4 * widths_;
     window_start_ = end;
+    widths_ = 0;
   }
 
   double absolute_, relative_;
   Scalar smallest_width_;
   bool everywhere_;
   double allowance_ = most_resolved;  ///< how many resolved kinks may be cut
-  Scalar length_{}, limit_ = unlimited(), width_{}, window_start_{};
+  Scalar length_{}, limit_ = unlimited(), width_{}, window_start_{}, widths_{};
   Phase phase_ = Phase::free;
   std::uint64_t cuts_ = 0;         ///< of the present step
   double frequency_at_end_ = 0.0;  ///< of stiff forces that begin where it does not matter for the step yet
