@@ -43,7 +43,9 @@ TEST(TrajectoryWriter, WritesEveryRootAttributeOfTheContract) {
   EXPECT_EQ(text_of(attributes, "solver_status"), "success");
   EXPECT_EQ(integer_of(attributes, "quick", -1), 0);
   EXPECT_EQ(text_of(attributes, "seal"), "sha256");
-  EXPECT_EQ(attributes.size(), 19U);
+  EXPECT_EQ(text_of(attributes, "frame_origin"), "ends of steps");
+  EXPECT_EQ(text_of(attributes, "frame_spacing"), "even");
+  EXPECT_EQ(attributes.size(), 21U);
 }
 
 TEST(TrajectoryWriter, StoresEveryNumberOfEveryFrameForAnySizeOfChunk) {
