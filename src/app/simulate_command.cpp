@@ -9,7 +9,9 @@
 
 #include "app/checkpoint_writer.hpp"
 #include "app/commands.hpp"
+#include "app/input_kind.hpp"
 #include "app/interrupt.hpp"
+#include "app/output_file.hpp"
 #include "app/progress_bar.hpp"
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
@@ -19,7 +21,6 @@
 #include "store/checkpoint_file.hpp"
 #include "store/mass_spring_quantities.hpp"
 #include "store/trajectory_writer.hpp"
-#include "store/write_target.hpp"
 #include "store/xdmf.hpp"
 #include "study/measure/energy_gauge.hpp"
 #include "system/provenance.hpp"
@@ -165,7 +166,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     throw InputError(fmt::format("{}: found {}, expected {} as in the checkpoint \"{}\"", what, found,
                                  expected, arguments.continued));
   };
-  if (!arguments.scene.empty() && scene::read_scene(arguments.scene).resolved_toml != from.scene) {
+  if (!arguments.scene.empty() && read_scene_for(arguments.scene, "simulate").resolved_toml != from.scene) {
     throw InputError(
         fmt::format("scene \"{}\" is not the scene of the checkpoint \"{}\" (\"{}\" at that time)",
                     arguments.scene, arguments.continued, from.scene_name));
@@ -251,19 +252,10 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   }
   const StepCount count = check_interval(control, integrator->info(), arguments.end_time);
   if (arguments.output.empty()) arguments.output = default_output(arguments);
-  store::check_writable_target(arguments.output);
   check_checkpoint_options(arguments);
-  if (arguments.xdmf) {
-    const std::filesystem::path xdmf = std::filesystem::path(arguments.output).replace_extension(".xdmf");
-    if (xdmf == arguments.output) {
-      throw InputError(fmt::format("--xdmf would overwrite the result file \"{}\", expected another ending",
-                                   arguments.output));
-    }
-    store::check_writable_place(xdmf);
-  }
 
   scene::Scene scene =
-      from ? scene::parse_scene(from->scene, arguments.scene) : scene::read_scene(arguments.scene);
+      from ? scene::parse_scene(from->scene, arguments.scene) : read_scene_for(arguments.scene, "simulate");
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   const store::FileHeader header{
       .kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
@@ -277,6 +269,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
+  prepare_output_file(arguments.output, {.xdmf = arguments.xdmf, .continues = from.has_value()});
   tell_of_short_last_step(control, count, arguments.end_time);
 
   const std::atomic<bool>& interrupted = install_interrupt_flag();
@@ -360,6 +353,7 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
       command->add_option("--t-end", arguments->end_time, "End time [s]; the start is 0")->type_name("T");
   CLI::Option* frames =
       command->add_option("--frames", arguments->frames, "States to store from start to end inclusive")
+          ->check(whole_number())
           ->capture_default_str()
           ->type_name("N");
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")

@@ -192,7 +192,8 @@ ExtrapolationTableau harmonic_extrapolation(int rows) {
 }
 
 ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const double> times,
-                                            const ExtrapolationSettings& settings) {
+                                            const ExtrapolationSettings& settings,
+                                            const ExtrapolationProgress& progress) {
   ExtrapolationRun run;
   Tableau tableau(*ivp.system, settings.tableau, run.work);
   const std::size_t last_row = settings.tableau.rows() - 1;
@@ -249,6 +250,7 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
         rejections_in_a_row = 0;
         const Float128 next = H * growth(attempt, last_row);
         proposal = std::min(interval, is_shortened ? std::max(proposal, next) : next);
+        if (progress) progress(static_cast<double>(Float128((t - ivp.t0) / interval)));
       } else {
         run.work.rejected_steps += 1;
         if (is_smallest)
