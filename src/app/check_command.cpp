@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/input_kind.hpp"
 #include "catalog/builtin_catalog.hpp"
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
@@ -34,14 +35,11 @@ struct Answer {
 /// Reads a file as `run` or `simulate` does.
 void check_file(const CheckArguments& arguments, const catalog::BuiltinCatalog& catalog, Answer& answer) {
   const CheckedTable file = CheckedTable::parse_file(answer.name);
-  const std::vector<std::string> keys = file.keys();
-  const auto has = [&keys](const char* key) {
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
-  };
-  if (has("kind")) {
+  const InputKind kind = input_kind(file);
+  if (kind == InputKind::study) {
     answer.what = "study";
     answer.warnings = study::read_plan(file, catalog::study_kinds(), catalog, arguments.quick).warnings;
-  } else if (has("particles") || has("generate")) {
+  } else if (kind == InputKind::scene) {
     answer.what = "scene";
     answer.warnings = scene::read_scene(file).warnings;
   } else {

@@ -12,6 +12,9 @@ inline constexpr int exit_verdict_fails = 1;  ///< done, but a verdict fails
 inline constexpr int exit_bad_input = 2;      ///< bad usage or input, nothing written
 inline constexpr int exit_failure = 3;        ///< numerical or system failure, what was finished is kept
 
+/// Refuses an option's text that is no integer of 64 bits, with the text as it was given: CLI11 takes the nearest one.
+CLI::Validator whole_number();
+
 /// What a subcommand does after parsing; returns the exit code.
 using Action = std::function<int()>;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/input_kind.hpp"
 #include "core/error.hpp"
 #include "system/provenance.hpp"
 
@@ -22,7 +23,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     throw InputError(fmt::format("{}: found {}, expected {} as in the checkpoint \"{}\"", what, found,
                                  expected, arguments.continued));
   };
-  if (!arguments.scene.empty() && scene::read_scene(arguments.scene).resolved_toml != from.scene) {
+  if (!arguments.scene.empty() && read_scene_for(arguments.scene, "simulate").resolved_toml != from.scene) {
     throw InputError(
         fmt::format("scene \"{}\" is not the scene of the checkpoint \"{}\" (\"{}\" at that time)",
                     arguments.scene, arguments.continued, from.scene_name));

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "app/input_kind.hpp"
 #include "catalog/equilibrium.hpp"
 #include "catalog/methods.hpp"
 #include "catalog/stable_steps.hpp"
@@ -63,7 +64,7 @@ std::vector<SpringRate> stiffest_springs(const mechanics::MassSpringSystem& syst
 }
 
 SceneFacts facts_of(const std::string& file) {
-  SceneFacts facts{.file = file, .scene = scene::read_scene(file)};
+  SceneFacts facts{.file = file, .scene = read_scene_for(file, "describe")};
   facts.system = std::make_shared<const mechanics::MassSpringSystem>(facts.scene.model);
   facts.state = initial_state(facts.scene);
   if (facts.scene.starts_at_equilibrium) {

@@ -7,13 +7,14 @@
 #include <numbers>
 
 #include "app/commands.hpp"
+#include "app/input_kind.hpp"
+#include "app/output_file.hpp"
 #include "catalog/equilibrium.hpp"
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "scene/scene.hpp"
 #include "store/mass_spring_quantities.hpp"
 #include "store/trajectory_writer.hpp"
-#include "store/write_target.hpp"
 #include "text/json_writer.hpp"
 
 namespace fw::app {
@@ -108,9 +109,9 @@ void write(const EquilibriumArguments& arguments, const std::string& command_lin
 }
 
 int find(const EquilibriumArguments& arguments, const std::string& command_line) {
-  if (!arguments.output.empty()) store::check_writable_target(arguments.output);
-  const scene::Scene scene = scene::read_scene(arguments.scene);
+  const scene::Scene scene = read_scene_for(arguments.scene, "equilibrium");
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
+  if (!arguments.output.empty()) prepare_output_file(arguments.output);
   const mechanics::MassSpringSystem system(scene.model);
   Report report{.found = catalog::find_equilibrium(system, scene.position, 0.0, arguments.solver)};
   if (!report.found.status.ok()) {

@@ -1,16 +1,17 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/method_json.hpp"
+#include "app/method_list.hpp"
 #include "app/methods_page.hpp"
-#include "catalog/methods.hpp"
 #include "catalog/problems.hpp"
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "scene/generators.hpp"
+#include "system/terminal.hpp"
 #include "text/json_writer.hpp"
 #include "text/text_table.hpp"
 
@@ -21,68 +22,12 @@ namespace {
 using text::JsonWriter;
 using text::TextTable;
 
-const std::string oracle_family = "oracle";
-
-std::string order_text(const MethodInfo& info) {
-  if (info.order == 0) return "variable";
-  if (info.order == info.order_with_velocity_forces) return std::to_string(info.order);
-  if (info.order_with_velocity_forces == 0) return fmt::format("{} (f(t, q) only)", info.order);
-  return fmt::format("{} ({} with dampers)", info.order, info.order_with_velocity_forces);
-}
-
-std::string yes_or_blank(bool value) {
-  return value ? "yes" : "";
-}
-
-std::string methods_json(bool only_oracles) {
-  JsonWriter json;
-  json.begin_array();
-  for (const catalog::MethodEntry& entry : catalog::methods()) {
-    const MethodInfo& info = entry.info();
-    if (only_oracles && info.family != oracle_family) continue;
-    json.begin_object();
-    json.key("name").value(info.name).key("title").value(info.title).key("family").value(info.family);
-    write_method_properties(json, info);
-    json.key("needs_second_order").value(info.needs.has(Capability::second_order));
-    json.key("reference").value(info.reference);
-    json.end_object();
-  }
-  json.end_array();
-  return json.text() + "\n";
-}
-
-std::string methods_table(bool only_oracles) {
-  std::vector<std::string> name, order, stages, kind, steps, symplectic, stable, title;
-  for (const catalog::MethodEntry& entry : catalog::methods()) {
-    const MethodInfo& info = entry.info();
-    if (only_oracles && info.family != oracle_family) continue;
-    name.push_back(info.name);
-    order.push_back(order_text(info));
-    stages.push_back(std::to_string(info.stages));
-    kind.push_back(info.is_explicit ? "explicit" : "implicit");
-    steps.push_back(!info.is_adaptive ? "fixed" : info.has_fixed_step ? "both" : "adaptive");
-    symplectic.push_back(yes_or_blank(info.is_symplectic));
-    stable.push_back(info.is_l_stable ? "L" : info.is_a_stable ? "A" : "");
-    title.push_back(info.title);
-  }
-  TextTable table;
-  table.add_column("name", TextTable::Align::left, name);
-  table.add_column("order", TextTable::Align::left, order);
-  table.add_column("stages", TextTable::Align::right, stages);
-  table.add_column("kind", TextTable::Align::left, kind);
-  table.add_column("step", TextTable::Align::left, steps);
-  table.add_column("symplectic", TextTable::Align::left, symplectic);
-  table.add_column("stable", TextTable::Align::left, stable);
-  table.add_column("title", TextTable::Align::left, title);
-  return table.text();
-}
-
 /// Entries of name, title and description, as JSON or as a table.
 struct Line {
   std::string name, title, description;
 };
 
-std::string lines_text(const std::vector<Line>& lines, bool as_json) {
+std::string lines_text(const std::vector<Line>& lines, bool as_json, std::size_t width) {
   if (as_json) {
     JsonWriter json;
     json.begin_array();
@@ -107,7 +52,7 @@ std::string lines_text(const std::vector<Line>& lines, bool as_json) {
   TextTable table;
   table.add_column("name", TextTable::Align::left, names);
   table.add_column("title", TextTable::Align::left, titles);
-  return table.text();
+  return table.text(width);
 }
 
 std::vector<Line> problem_lines() {
@@ -134,36 +79,76 @@ std::vector<Line> scene_lines() {
   return lines;
 }
 
-std::string list(const std::string& what, bool as_json) {
-  if (what == "methods") return as_json ? methods_json(false) : methods_table(false);
-  if (what == "oracles") return as_json ? methods_json(true) : methods_table(true);
-  if (what == "problems") return lines_text(problem_lines(), as_json);
-  if (what == "scenes") return lines_text(scene_lines(), as_json);
-  return lines_text(study_lines(), as_json);
+struct ListArguments {
+  std::string what;
+  bool json = false, markdown = false, all = false;
+  bool explicit_only = false, implicit_only = false, adaptive_only = false, fixed_only = false;
+  MethodFilter filter;
+};
+
+std::string list(const ListArguments& arguments) {
+  const std::size_t width = terminal_width(STDOUT_FILENO);
+  if (arguments.what == "problems") return lines_text(problem_lines(), arguments.json, width);
+  if (arguments.what == "scenes") return lines_text(scene_lines(), arguments.json, width);
+  if (arguments.what == "studies") return lines_text(study_lines(), arguments.json, width);
+  if (arguments.json) return methods_json(chosen_methods(arguments.filter));
+  const bool is_short = arguments.what == "methods" && !arguments.all && !arguments.filter.asks();
+  return is_short ? methods_overview(width) : methods_table(chosen_methods(arguments.filter), width);
+}
+
+/// Throws InputError for options that say nothing of what is to be listed.
+void check_list_arguments(const ListArguments& arguments) {
+  if (arguments.markdown && arguments.what != "methods") {
+    throw InputError(fmt::format("--markdown: found \"{}\", expected \"methods\"", arguments.what));
+  }
+  const bool of_methods = arguments.what == "methods" || arguments.what == "oracles";
+  if (!of_methods && (arguments.all || arguments.filter.asks())) {
+    throw InputError(fmt::format("found \"{}\" with a filter of methods, expected \"methods\" or \"oracles\"",
+                                 arguments.what));
+  }
+  if (arguments.markdown && (arguments.all || arguments.filter.asks())) {
+    throw InputError("found --markdown with a filter, expected it alone: the page has all methods");
+  }
 }
 
 }  // namespace
 
 void add_list_command(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("list", "Lists methods, problems, scenes, studies or oracles");
-  auto what = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
-  command->add_option("what", *what, "What to list")
+  auto arguments = std::make_shared<ListArguments>();
+  command->add_option("what", arguments->what, "What to list")
       ->required()
       ->check(CLI::IsMember({"methods", "problems", "scenes", "studies", "oracles"}))
       ->type_name("methods|problems|scenes|studies|oracles");
-  auto* json_flag = command->add_flag("--json", *json, "As JSON");
-  auto markdown = std::make_shared<bool>(false);
+  auto* json = command->add_flag("--json", arguments->json, "As JSON");
   command
-      ->add_flag("--markdown", *markdown,
+      ->add_flag("--markdown", arguments->markdown,
                  "Methods as tables in Markdown, with formulas, limits and literature")
-      ->excludes(json_flag);
-  command->callback([what, json, markdown, &action] {
-    action = [what, json, markdown] {
-      if (*markdown && *what != "methods") {
-        throw InputError(fmt::format("--markdown: found \"{}\", expected \"methods\"", *what));
-      }
-      fmt::print("{}", *markdown ? methods_page() : list(*what, *json));
+      ->excludes(json);
+  command->add_flag("--all", arguments->all, "Every method, a row each");
+  MethodFilter& filter = arguments->filter;
+  command->add_option("--family", filter.family, "Methods of the families with TEXT in their name")
+      ->type_name("TEXT");
+  command->add_option("--order", filter.order, "Methods of order P; 0: of variable order")
+      ->check(CLI::Range(0, 100))
+      ->type_name("P");
+  auto* is_explicit = command->add_flag("--explicit", arguments->explicit_only, "Explicit methods");
+  command->add_flag("--implicit", arguments->implicit_only, "Implicit methods")->excludes(is_explicit);
+  auto* adaptive =
+      command->add_flag("--adaptive", arguments->adaptive_only, "Methods that can choose their steps");
+  command->add_flag("--fixed", arguments->fixed_only, "Methods that can take constant steps")
+      ->excludes(adaptive);
+  command->add_flag("--symplectic", filter.symplectic, "Symplectic methods");
+  command->add_flag("--a-stable", filter.a_stable, "A-stable methods");
+  command->add_flag("--l-stable", filter.l_stable, "L-stable methods");
+  command->callback([arguments, &action] {
+    MethodFilter& wanted = arguments->filter;
+    wanted.only_oracles = arguments->what == "oracles";
+    if (arguments->explicit_only || arguments->implicit_only) wanted.is_explicit = arguments->explicit_only;
+    if (arguments->adaptive_only || arguments->fixed_only) wanted.is_adaptive = arguments->adaptive_only;
+    action = [arguments] {
+      check_list_arguments(*arguments);
+      fmt::print("{}", arguments->markdown ? methods_page() : list(*arguments));
       return exit_success;
     };
   });

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/commands.hpp"
+#include "app/input_kind.hpp"
 #include "app/interrupt.hpp"
 #include "app/study_run.hpp"
 #include "catalog/builtin_catalog.hpp"
@@ -79,6 +80,7 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
       study = read_result_file(path, arguments, catalog);
     } else {
       const CheckedTable spec = CheckedTable::parse_file(path);
+      refuse_scene(spec, path);
       study = {.source = path,
                .output = std::filesystem::path(arguments.directory) /
                          std::filesystem::path(path).stem().concat(".h5"),
@@ -96,20 +98,6 @@ std::vector<PlannedStudy> read_studies(const RunArguments& arguments) {
     studies.push_back(std::move(study));
   }
   return studies;
-}
-
-void make_directories(const std::vector<PlannedStudy>& studies) {
-  for (const PlannedStudy& planned : studies) {
-    const std::filesystem::path directory = planned.output.parent_path();
-    if (directory.empty()) continue;
-    std::error_code error;
-    std::filesystem::create_directories(directory, error);
-    if (!error) continue;
-    const std::string message =
-        fmt::format("cannot make the directory \"{}\": {}", directory.string(), error.message());
-    if (error == std::errc::no_space_on_device || error == std::errc::io_error) throw SystemError(message);
-    throw InputError(message);
-  }
 }
 
 /// Says in what a repeated study differs from the file it comes from; whether it differs.
@@ -141,7 +129,7 @@ int run(const RunArguments& arguments, const std::string& command_line) {
     throw InputError(fmt::format("--time-limit: found {}, expected at least 0", *arguments.time_limit));
   }
   const std::vector<PlannedStudy> studies = read_studies(arguments);
-  make_directories(studies);
+  for (const PlannedStudy& planned : studies) store::make_directory_of(planned.output);
   for (const PlannedStudy& planned : studies) store::check_writable_target(planned.output);
   const std::atomic<bool>& interrupted = install_interrupt_flag();
   const StudyRunOptions options{.command_line = command_line,
@@ -198,6 +186,7 @@ void add_run_command(CLI::App& app, Action& action, const std::string& command_l
   command
       ->add_option("--jobs", arguments->jobs,
                    "Cases that run at the same time; cases that are timed run alone")
+      ->check(whole_number())
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--quick", arguments->quick, "Shrink each study by its own [quick] section");

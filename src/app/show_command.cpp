@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
@@ -6,6 +7,7 @@
 #include "app/commands.hpp"
 #include "store/show.hpp"
 #include "store/show_table.hpp"
+#include "system/terminal.hpp"
 
 namespace fw::app {
 
@@ -26,7 +28,7 @@ int show(ShowArguments& arguments) {
                                                   : store::TableFormat::latex;
     fmt::print("{}", store::show_table(arguments.path, arguments.table));
   } else {
-    fmt::print("{}", store::show(arguments.path, arguments.table.columns));
+    fmt::print("{}", store::show(arguments.path, arguments.table.columns, terminal_width(STDOUT_FILENO)));
   }
   return exit_success;
 }

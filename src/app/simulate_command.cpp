@@ -11,7 +11,9 @@
 #include "app/checkpoint_writer.hpp"
 #include "app/commands.hpp"
 #include "app/continued_run.hpp"
+#include "app/input_kind.hpp"
 #include "app/interrupt.hpp"
+#include "app/output_file.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_notes.hpp"
 #include "app/start_state.hpp"
@@ -23,7 +25,6 @@
 #include "store/checkpoint_file.hpp"
 #include "store/mass_spring_quantities.hpp"
 #include "store/trajectory_writer.hpp"
-#include "store/write_target.hpp"
 #include "store/xdmf.hpp"
 #include "study/measure/energy_gauge.hpp"
 
@@ -172,19 +173,10 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   }
   const StepCount count = check_interval(control, integrator->info(), arguments.end_time);
   if (arguments.output.empty()) arguments.output = default_output(arguments);
-  store::check_writable_target(arguments.output);
   check_checkpoint_options(arguments);
-  if (arguments.xdmf) {
-    const std::filesystem::path xdmf = std::filesystem::path(arguments.output).replace_extension(".xdmf");
-    if (xdmf == arguments.output) {
-      throw InputError(fmt::format("--xdmf would overwrite the result file \"{}\", expected another ending",
-                                   arguments.output));
-    }
-    store::check_writable_place(xdmf);
-  }
 
   scene::Scene scene =
-      from ? scene::parse_scene(from->scene, arguments.scene) : scene::read_scene(arguments.scene);
+      from ? scene::parse_scene(from->scene, arguments.scene) : read_scene_for(arguments.scene, "simulate");
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   const store::FileHeader header{
       .kind = "trajectory", .title = scene.title, .command_line = command_line, .spec = scene.resolved_toml};
@@ -202,6 +194,7 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
+  prepare_output_file(arguments.output, {.xdmf = arguments.xdmf, .continues = from.has_value()});
   tell_of_short_last_step(control, count, arguments.end_time);
   StepAdvice advice;
   if (const auto* fixed = std::get_if<FixedStep>(&control);
@@ -323,6 +316,7 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
           ->add_option("--frames", arguments->frames,
                        "States to store from start to end inclusive; default: 101, of a fixed step about as "
                        "many at equal spacing")
+          ->check(whole_number())
           ->type_name("N");
   command->add_option("-o,--output", arguments->output, "Result file; default: <scene>-<method>.h5")
       ->type_name("FILE.h5");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/auxv.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -14,19 +15,16 @@
 #include "store/study_store.hpp"
 #include "study/runner.hpp"
 #include "system/sha256.hpp"
+#include "system/terminal.hpp"
 #include "text/text_table.hpp"
+#include "text/utf8.hpp"
+#include "text/wrapped_lines.hpp"
 
 namespace fw::app {
 
 namespace {
 
 using study::Verdict;
-
-std::string running_text(const std::vector<std::string>& running) {
-  if (running.empty()) return "";
-  return running.size() == 1 ? running.front()
-                             : fmt::format("{} and {} more", running.front(), running.size() - 1);
-}
 
 /// The verdicts at the end: some are reached from all cases together.
 void count(const study::CaseResult& result, Tally& tally) {
@@ -36,6 +34,22 @@ void count(const study::CaseResult& result, Tally& tally) {
   tally.done += result.verdict == Verdict::done;
   if (result.verdict == Verdict::fails)
     tally.failures.push_back(fmt::format("{}: {}", result.id, result.reason));
+}
+
+/// The line of a finished case; a reason that does not fit stands beneath it.
+std::string case_line(const study::CaseReport& report, std::size_t done, std::size_t width) {
+  const std::string name =
+      fmt::format("[{}/{}] {:<14} {}", done, report.total, to_string(report.result.verdict),
+                  text::printable_line(report.result.id));
+  const std::string time = report.kept ? "(kept)" : fmt::format("({:.1f} s)", report.seconds);
+  const std::string reason = text::printable_line(report.result.reason);
+  const std::string line =
+      reason.empty() ? fmt::format("  {}  {}", name, time) : fmt::format("  {}  {}  {}", name, reason, time);
+  if (text::displayed_width(line) <= width) return line + '\n';
+  constexpr std::size_t indent = 6;
+  std::string out = text::wrapped_paragraph("  ", fmt::format("{}  {}", name, time), width, indent);
+  if (!reason.empty()) out += text::wrapped_paragraph(std::string(indent, ' '), reason, width, indent);
+  return out;
 }
 
 }  // namespace
@@ -81,9 +95,8 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
     bar.clear();
     tally.kept += report.kept;
     tally.not_computed += !report.computed;
-    fmt::print("  [{}/{}] {:<14} {}  {}{}\n", ++done, report.total, to_string(report.result.verdict),
-               report.result.id, report.result.reason,
-               report.kept ? "  (kept)" : fmt::format("  ({:.1f} s)", report.seconds));
+    ++done;
+    fmt::print("{}", case_line(report, done, terminal_width(STDOUT_FILENO)));
     std::fflush(stdout);
   };
   const auto start = std::chrono::steady_clock::now();
@@ -93,9 +106,11 @@ Tally run_study(const PlannedStudy& planned, const StudyRunOptions& run,
   for (const study::CaseResult& finished : result.cases) count(finished, tally);
   store.write(run.command_line, result);
   tally.complete = result.complete;
-  fmt::print("{}: {} hold, {} fail, {} not applicable{}{}\n\n", planned.output.string(), tally.holds,
-             tally.fails, tally.not_applicable, tally.done > 0 ? fmt::format(", {} done", tally.done) : "",
-             tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
+  const std::string ended = fmt::format(
+      "{}: {} hold, {} fail, {} not applicable{}{}", planned.output.string(), tally.holds, tally.fails,
+      tally.not_applicable, tally.done > 0 ? fmt::format(", {} done", tally.done) : "",
+      tally.kept > 0 ? fmt::format(" ({} kept from an earlier run)", tally.kept) : "");
+  fmt::print("{}\n", text::wrapped_paragraph("", ended, terminal_width(STDOUT_FILENO), 2));
   std::fflush(stdout);
   return tally;
 }
@@ -129,11 +144,14 @@ void print_summary(const std::vector<PlannedStudy>& studies, const std::vector<T
   table.add_column("kept", Align::right, kept);
   table.add_column("time [s]", Align::right, seconds);
   table.add_column("verdict", Align::left, verdicts);
-  fmt::print("{}", table.text());
+  const std::size_t width = terminal_width(STDOUT_FILENO);
+  fmt::print("{}", table.text(width));
   for (std::size_t k = 0; k < tallies.size(); ++k) {
     if (tallies[k].failures.empty()) continue;
     fmt::print("\n{} fails in\n", names[k]);
-    for (const std::string& failure : tallies[k].failures) fmt::print("  {}\n", failure);
+    for (const std::string& failure : tallies[k].failures) {
+      fmt::print("{}", text::wrapped_paragraph("  ", text::printable_line(failure), width, 4));
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -17,7 +18,9 @@
 #include "catalog/study_kinds.hpp"
 #include "core/error.hpp"
 #include "store/study_store.hpp"
+#include "store/write_target.hpp"
 #include "study/runner.hpp"
+#include "system/terminal.hpp"
 #include "text/json_writer.hpp"
 #include "text/text_table.hpp"
 #include "text/toml_writer.hpp"
@@ -96,8 +99,7 @@ std::string table(const StudyResult& result, bool all) {
     std::vector<std::string> cells;
     for (const Row& row : rows) {
       if (!all && row.verdict == to_string(Verdict::not_applicable)) continue;
-      const bool is_long = cell == &Row::derived && row.derived.size() > 28;
-      cells.push_back(is_long ? row.derived.substr(0, 25) + "..." : row.*cell);
+      cells.push_back(row.*cell);
     }
     text.add_column(name, TextTable::Align::left, cells);
   };
@@ -108,9 +110,9 @@ std::string table(const StudyResult& result, bool all) {
   add("measured", &Row::measured);
   add("verdict", &Row::verdict);
   add("reason", &Row::reason);
-  return text.text() + fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n",
-                                   result.cases.size(), count(Verdict::holds), count(Verdict::fails),
-                                   count(Verdict::not_applicable));
+  return text.text(terminal_width(STDOUT_FILENO)) +
+         fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n", result.cases.size(),
+                     count(Verdict::holds), count(Verdict::fails), count(Verdict::not_applicable));
 }
 
 std::string json(const StudyResult& result) {
@@ -137,8 +139,7 @@ StudyResult run(const study::Plan& plan, study::CaseArchive& archive, const Veri
   options.time_limit = arguments.time_limit;
   options.waiting = [&](const study::RunProgress& progress) {
     const auto done = static_cast<double>(progress.done);
-    bar.update(done / static_cast<double>(progress.total), done,
-               progress.running.empty() ? "" : progress.running.front());
+    bar.update(done / static_cast<double>(progress.total), done, running_text(progress.running));
   };
   StudyResult result = study::run_plan(plan, archive, options);
   bar.clear();
@@ -157,6 +158,7 @@ int verify(const VerifyArguments& arguments, const std::string& command_line) {
     NothingKept archive;
     result = run(plan, archive, arguments, "", interrupted);
   } else {
+    store::make_directory_of(arguments.output);
     store::StudyStore archive(arguments.output);
     result = run(plan, archive, arguments, program_identity(), interrupted);
     archive.write(command_line, result);
@@ -199,6 +201,7 @@ void add_verify_command(CLI::App& app, Action& action, const std::string& comman
   command->add_flag("--json", arguments->json, "As JSON");
   command->add_flag("--all", arguments->all, "Prints properties that do not apply as well");
   command->add_option("--jobs", arguments->jobs, "Schemes checked at the same time")
+      ->check(whole_number())
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
   command->callback([arguments, &action, command_line] {

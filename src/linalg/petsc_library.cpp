@@ -144,6 +144,34 @@ void check_values(PetscOptions options, const std::vector<std::string>& names) {
   }
 }
 
+/// Throws InputError for an option that makes PETSc print between our lines, write or read files, or wait for a
+/// debugger: none of them changes a result. Names are taken apart at "_", since objects have prefixes.
+void refuse_side_effects(const std::string& text, const std::vector<std::string>& names) {
+  constexpr std::string_view parts[] = {"help",    "monitor",   "view",     "viewer", "draw",       "plot",
+                                        "print",   "log",       "info",     "dump",   "debugger",   "debug",
+                                        "history", "citations", "saws",     "test",   "trajectory", "save",
+                                        "load",    "file",      "filename", "python", "version"};
+  constexpr std::string_view endings[] = {"converged_reason", "converged_rate", "compute_eigenvalues",
+                                          "compute_singularvalues"};
+  constexpr std::string_view starts[] = {"-options_", "-prefix_", "-malloc",
+                                         "-on_error", "-memory",  "-objects"};
+  for (const std::string& name : names) {
+    std::istringstream words(name.substr(1));
+    bool is_refused = false;
+    for (std::string part; std::getline(words, part, '_');) {
+      is_refused = is_refused || std::ranges::find(parts, std::string_view(part)) != std::end(parts);
+    }
+    for (const std::string_view end : endings) is_refused = is_refused || ends_with(name, end);
+    for (const std::string_view start : starts) is_refused = is_refused || name.starts_with(start);
+    if (!is_refused) continue;
+    throw InputError(fmt::format(
+        "PETSc options \"{}\": {} prints, writes or reads files beside the results, expected options of "
+        "solvers and "
+        "preconditioners only; the environment variable PETSC_OPTIONS takes those of the whole library",
+        text, name));
+  }
+}
+
 }  // namespace
 
 void petsc_check(PetscErrorCode code) {
@@ -215,6 +243,7 @@ PetscOptionText::PetscOptionText(const std::string& text) : text_(text) {
     value_may_follow = is_name == PETSC_TRUE;
     if (is_name == PETSC_TRUE) names.push_back(word);
   }
+  refuse_side_effects(text, names);
   try {
     const auto parse = [&](PetscOptions* into) {
       petsc_check(PetscOptionsCreate(into));

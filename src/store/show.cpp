@@ -14,6 +14,7 @@
 #include "text/json_writer.hpp"
 #include "text/text_table.hpp"
 #include "text/utf8.hpp"
+#include "text/wrapped_lines.hpp"
 
 namespace fw::store {
 
@@ -23,30 +24,59 @@ std::string number_text(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-std::string origin(const std::filesystem::path& path, const Attributes& attributes) {
-  std::string out = text::printable_line(path.string()) + '\n';
-  const auto line = [&](const char* label, const std::string& text) {
-    if (!text.empty()) out += fmt::format("  {:<9} {}\n", label, text::printable_line(text));
-  };
-  const bool dirty = integer_of(attributes, "git_dirty", 0) != 0;
-  line("kind", text_of(attributes, "kind"));
-  line("title", text_of(attributes, "title"));
-  line("status", text_of(attributes, "status"));
-  line("solver", text_of(attributes, "solver_status"));
+/// A line "  label     text" of what a file is; nothing without a text.
+std::string labelled(const char* label, const std::string& text, std::size_t width) {
+  constexpr std::size_t indent = 12;
+  if (text.empty()) return "";
+  return text::wrapped_paragraph(fmt::format("  {:<9} ", label), text::printable_line(text), width, indent);
+}
+
+/// What the file is: before the numbers.
+std::string subject(const std::filesystem::path& path, const Attributes& attributes, std::size_t width) {
+  std::string out = text::wrapped_paragraph("", text::printable_line(path.string()), width, 2);
+  out += labelled("kind", text_of(attributes, "kind"), width);
+  out += labelled("title", text_of(attributes, "title"), width);
+  out += labelled("status", text_of(attributes, "status"), width);
+  out += labelled("solver", text_of(attributes, "solver_status"), width);
   const std::string frames = text_of(attributes, "frame_origin");  // not in files of older versions
-  if (!frames.empty()) line("frames", frames + "; spacing " + text_of(attributes, "frame_spacing"));
-  line("stopped", text_of(attributes, "stopped_at"));
+  if (!frames.empty()) {
+    out += labelled("frames", frames + "; spacing " + text_of(attributes, "frame_spacing"), width);
+  }
+  out += labelled("stopped", text_of(attributes, "stopped_at"), width);
   std::istringstream warnings(text_of(attributes, "warnings"));
-  for (std::string warning; std::getline(warnings, warning);) line("warning", warning);
-  line("created", text_of(attributes, "created"));
-  line("command", text_of(attributes, "command_line"));
-  line("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""));
-  line("compiler", text_of(attributes, "compiler"));
-  line("processor", text_of(attributes, "cpu"));
-  line("seed", fmt::format("{}", integer_of(attributes, "seed", 0)));
+  for (std::string warning; std::getline(warnings, warning);) out += labelled("warning", warning, width);
   // Its numbers are those of a coarser study than the title tells of.
-  if (integer_of(attributes, "quick", 0) != 0) line("quick", "yes: shrunk by the [quick] section");
+  if (integer_of(attributes, "quick", 0) != 0) {
+    out += labelled("quick", "yes: shrunk by the [quick] section", width);
+  }
   return out;
+}
+
+/// How the file came about: after the numbers.
+std::string provenance(const Attributes& attributes, std::size_t width) {
+  const bool dirty = integer_of(attributes, "git_dirty", 0) != 0;
+  std::string out = "\n";
+  out += labelled("created", text_of(attributes, "created"), width);
+  out += labelled("command", text_of(attributes, "command_line"), width);
+  out += labelled("commit", text_of(attributes, "git_commit") + (dirty ? " with local changes" : ""), width);
+  out += labelled("compiler", text_of(attributes, "compiler"), width);
+  out += labelled("processor", text_of(attributes, "cpu"), width);
+  out += labelled("seed", fmt::format("{}", integer_of(attributes, "seed", 0)), width);
+  return out;
+}
+
+/// Whether the scene of a trajectory, in its resolved text with a key per line, has dampers or drag: a key
+/// "drag" or with "damping" in it whose value has a digit other than 0.
+bool loses_energy(const std::string& spec) {
+  std::istringstream lines(spec);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find(" = ");
+    if (equals == std::string::npos) continue;
+    const std::string key = line.substr(0, equals);
+    if (key.find("damping") == std::string::npos && key != "drag") continue;
+    if (line.find_first_of("123456789", equals) != std::string::npos) return true;
+  }
+  return false;
 }
 
 /// Whether a column is left out of the table for people: `case` repeats problem and method, and what ends in
@@ -66,12 +96,19 @@ bool is_detail(const record::Column& column, const std::vector<record::Column>& 
   return false;
 }
 
+/// Prose last, where a table has room for it.
+void put_reason_last(std::vector<record::Column>& columns) {
+  std::stable_partition(columns.begin(), columns.end(),
+                        [](const record::Column& column) { return column.name != "reason"; });
+}
+
 std::string words(const StudySummary& summary, const std::vector<std::string>& wanted,
-                  const std::string& file) {
+                  const std::string& file, std::size_t width) {
   text::TextTable table;
   std::size_t cases = 0, left_out = 0;
-  const std::vector<record::Column> columns =
+  std::vector<record::Column> columns =
       wanted.empty() ? summary.columns : pick_columns(summary.columns, wanted, file);
+  if (wanted.empty()) put_reason_last(columns);
   for (const record::Column& column : columns) {
     if (wanted.empty() && is_detail(column, summary.columns)) {
       ++left_out;
@@ -103,13 +140,14 @@ std::string words(const StudySummary& summary, const std::vector<std::string>& w
   const std::string more =
       left_out > 0 ? fmt::format("({} more columns are in the file; --json shows them)\n", left_out) : "";
   const std::string done = summary.verdicts[3] > 0 ? fmt::format(", {} done", summary.verdicts[3]) : "";
-  return fmt::format("\n{}{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable{}\n", table.text(), more,
-                     cases, cases == 1 ? "" : "s", summary.verdicts[0], summary.verdicts[0] == 1 ? "s" : "",
-                     summary.verdicts[1], summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2], done);
+  return fmt::format("\n{}{}\n{} case{}: {} hold{}, {} fail{}, {} not applicable{}\n", table.text(width),
+                     more, cases, cases == 1 ? "" : "s", summary.verdicts[0],
+                     summary.verdicts[0] == 1 ? "s" : "", summary.verdicts[1],
+                     summary.verdicts[1] == 1 ? "s" : "", summary.verdicts[2], done);
 }
 
 std::string words(const TrajectorySummary& summary, const std::vector<std::string>& wanted,
-                  const std::string& file) {
+                  const std::string& file, std::size_t width) {
   if (!wanted.empty()) {
     throw InputError(
         fmt::format("\"{}\" is a trajectory: columns are there with --csv, --markdown or --latex", file));
@@ -128,14 +166,17 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
   energies.add_column("end", Align::right,
                       {number_text(summary.kinetic_end), number_text(summary.potential_end),
                        number_text(summary.total_end())});
-  out += energies.text();
-  out += fmt::format("\nenergy drift {} J, at most {} J", number_text(summary.drift),
-                     number_text(summary.largest_drift));
+  out += energies.text(width);
+  const bool is_damped = loses_energy(text_of(summary.attributes, "spec"));
+  std::string change = fmt::format("{} {} J, at most {} J", is_damped ? "energy change" : "energy drift",
+                                   number_text(summary.drift), number_text(summary.largest_drift));
   if (summary.total_start() != 0.0) {
     const double scale = std::abs(summary.total_start());
-    out += fmt::format(" (relative {}, at most {})", number_text(summary.drift / scale),
-                       number_text(summary.largest_drift / scale));
+    change += fmt::format(" (relative {}, at most {})", number_text(summary.drift / scale),
+                          number_text(summary.largest_drift / scale));
   }
+  if (is_damped) change += "; dampers or drag take energy out, so that it is no error of the method alone";
+  out += '\n' + text::wrapped_paragraph("", change, width, 0);
   text::TextTable work;
   std::vector<std::string> names, counts;
   for (const auto& [name, count] : summary.counters) {
@@ -144,7 +185,7 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
   }
   work.add_column("work", Align::left, std::move(names));
   work.add_column("", Align::right, std::move(counts));
-  return out + "\n\n" + work.text();
+  return out + "\n" + work.text(width);
 }
 
 void write_json(text::JsonWriter& json, const StudySummary& summary) {
@@ -202,10 +243,12 @@ void write_json(text::JsonWriter& json, const TrajectorySummary& summary) {
 
 }  // namespace
 
-std::string show(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+std::string show(const std::filesystem::path& path, const std::vector<std::string>& columns,
+                 std::size_t width) {
   return std::visit(
       [&](const auto& content) {
-        return origin(path, content.attributes) + words(content, columns, path.string());
+        return subject(path, content.attributes, width) + words(content, columns, path.string(), width) +
+               provenance(content.attributes, width);
       },
       read_show_content(path));
 }

@@ -14,6 +14,18 @@ namespace fw::store {
 
 namespace fs = std::filesystem;
 
+void make_directory_of(const fs::path& path) {
+  const fs::path directory = path.parent_path();
+  std::error_code error;
+  if (directory.empty() || fs::exists(directory, error)) return;
+  fs::create_directories(directory, error);
+  if (!error) return;
+  const std::string message =
+      fmt::format("cannot make the directory \"{}\": {}", directory.string(), error.message());
+  if (error == std::errc::no_space_on_device || error == std::errc::io_error) throw SystemError(message);
+  throw InputError(message);
+}
+
 void check_writable_place(const fs::path& path) {
   const std::string name = path.string();
   if (name.empty() || !path.has_filename() || path.filename() == "." || path.filename() == "..") {

@@ -4,6 +4,10 @@
 
 namespace fw::store {
 
+/// Makes the directory that `path` is in, with those above it, unless it is there. Throws InputError that names it,
+/// SystemError on a full disk.
+void make_directory_of(const std::filesystem::path& path);
+
 /// To be called before a long computation whose result goes to `path`: throws InputError that names the path
 /// if its directory is missing or cannot be written, if it is a directory, a device or protected against
 /// writing, or if something is there that is no whole federwerk result and would be lost. Throws SystemError

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <set>
+#include <map>
 
 namespace fw::study {
 
@@ -34,6 +34,42 @@ void declare(settings::Archive& a, StudyHeader& header) {
         .doc("time after which a case is ended; 0: never"));
 }
 
+namespace {
+
+/// The text of the case's cell `name` that is known before it runs; empty: it has none.
+std::string known_text(const PlannedCase& planned, std::string_view name) {
+  for (const auto& [known, value] : planned.known) {
+    const auto* text = std::get_if<std::string>(&value);
+    if (known == name && text != nullptr) return *text;
+  }
+  return "";
+}
+
+/// Throws InputError where two cases have the same name, with what of the two is to be changed.
+void check_unique(const Plan& plan, const std::string& source) {
+  std::map<std::string, const PlannedCase*> known;
+  for (const PlannedCase& planned : plan.cases) {
+    const auto [entry, is_new] = known.emplace(planned.id, &planned);
+    if (is_new) continue;
+    const PlannedCase& other = *entry->second;
+    const std::string method = known_text(planned, "method");
+    const bool same_method = !method.empty() && method == known_text(other, "method");
+    const bool same_case = planned.identity == other.identity;
+    std::string mend = "give one of its problems another label";
+    if (same_method && same_case) {
+      mend = fmt::format("the method \"{}\" is listed twice, remove one", method);
+    } else if (!method.empty() && !same_method) {
+      mend = fmt::format("the methods \"{}\" and \"{}\" get the same name, remove one",
+                         known_text(other, "method"), method);
+    } else if (same_case) {
+      mend = "an entry of a list appears twice, remove one";
+    }
+    throw InputError(fmt::format("{}: the case \"{}\" appears twice; {}", source, planned.id, mend));
+  }
+}
+
+}  // namespace
+
 Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, const Catalog& catalog,
                bool quick) {
   std::vector<std::string> names;
@@ -47,13 +83,7 @@ Plan read_plan(const CheckedTable& spec, const std::vector<StudyKind>& kinds, co
     plan.summary = kind.summary;
     kind.read(spec, catalog, quick, plan);
   }
-  std::set<std::string> ids;
-  for (const PlannedCase& planned : plan.cases) {
-    if (!ids.insert(planned.id).second) {
-      throw InputError(fmt::format("{}: the case \"{}\" appears twice; give its problem another label",
-                                   spec.source_name(), planned.id));
-    }
-  }
+  check_unique(plan, spec.source_name());
   return plan;
 }
 

@@ -15,6 +15,12 @@
 
 namespace fw::study {
 
+/// A long piece of work inside a case, such as its reference, and the part of it that is done, in [0, 1].
+struct CaseStage {
+  std::string what;
+  double fraction = 0.0;
+};
+
 /// What a case may ask its surroundings while it runs.
 struct RunContext {
   /// The user's interrupt; a case then stops and is not kept.
@@ -23,6 +29,8 @@ struct RunContext {
   std::filesystem::path reference_cache{};
   /// Takes the warnings of the runs, a text per run (`Solution::warnings`), empty where there are none. Null: nobody.
   std::vector<std::string>* warnings = nullptr;
+  /// Takes what the case tells of a stage, as often as it likes; empty: nobody listens.
+  std::function<void(const CaseStage&)> tell{};
 
   /// `integrator.solve` under the token. Throws Interrupted where that stopped the run.
   Solution solve(const Integrator& integrator, const Ivp& ivp, const StepControl& control,

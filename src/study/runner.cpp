@@ -4,6 +4,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <deque>
 #include <exception>
@@ -67,6 +68,30 @@ std::string answer_of(const PlannedCase& planned, const RunContext& context) {
   }
 }
 
+/// Passes what a case tells of a stage on to the parent, at most twice a second.
+class StageTeller {
+ public:
+  void operator()(const CaseStage& stage) {
+    if (stage.what == last_ && seconds_since(at_) < 0.5) return;
+    last_ = stage.what;
+    at_ = Clock::now();
+    WorkerProcess::tell(fmt::format("{} {}", stage.fraction, stage.what));
+  }
+
+ private:
+  std::string last_;
+  Clock::time_point at_{};
+};
+
+/// What `StageTeller` has sent; nothing where that is empty.
+std::optional<CaseStage> stage_of(const std::string& note) {
+  CaseStage stage;
+  const auto [end, error] = std::from_chars(note.data(), note.data() + note.size(), stage.fraction);
+  if (error != std::errc() || end == note.data() + note.size()) return std::nullopt;
+  stage.what.assign(end + 1, note.data() + note.size());
+  return stage;
+}
+
 /// The run of one plan.
 class Run {
  public:
@@ -94,6 +119,8 @@ class Run {
     std::unique_ptr<WorkerProcess> worker;
     std::optional<std::size_t> index{};
     Clock::time_point start{};
+    std::string stage{};  ///< the last one that was told
+    Clock::time_point stage_start{};
   };
 
   std::string key_of(const PlannedCase& planned) const {
@@ -118,6 +145,7 @@ class Run {
         {std::make_unique<WorkerProcess>([this](std::size_t index, const std::atomic<bool>& interrupted) {
           RunContext context = options_.context;
           context.stop = StopToken(interrupted);
+          context.tell = StageTeller();
           return answer_of(plan_.cases[index], context);
         })});
   }
@@ -140,6 +168,7 @@ class Run {
       }
       idle->index = queue.front();
       idle->start = Clock::now();
+      idle->stage.clear();
       idle->worker->assign({queue.front(), plan_.cases[queue.front()].is_timed});
       queue.pop_front();
     }
@@ -170,15 +199,29 @@ class Run {
     }
   }
 
-  void wait_for(const std::vector<WorkerSlot>& slots) {
+  /// The slot's case as it is now.
+  RunningCase running_case(WorkerSlot& slot) const {
+    RunningCase running{.id = plan_.cases[*slot.index].id,
+                        .seconds = seconds_since(slot.start),
+                        .stage = stage_of(slot.worker->note())};
+    const std::string what = running.stage ? running.stage->what : "";
+    if (what != slot.stage) {
+      slot.stage = what;
+      slot.stage_start = Clock::now();
+    }
+    if (running.stage) running.stage_seconds = seconds_since(slot.stage_start);
+    return running;
+  }
+
+  void wait_for(std::vector<WorkerSlot>& slots) {
     std::vector<pollfd> watched;
     watched.reserve(slots.size());
     for (const WorkerSlot& slot : slots) watched.push_back({slot.worker->descriptor(), POLLIN, 0});
     ::poll(watched.data(), watched.size(), 100);
     if (!options_.waiting) return;
     RunProgress progress{.done = done_, .total = plan_.cases.size()};
-    for (const WorkerSlot& slot : slots) {
-      if (slot.index) progress.running.push_back(plan_.cases[*slot.index].id);
+    for (WorkerSlot& slot : slots) {
+      if (slot.index) progress.running.push_back(running_case(slot));
     }
     options_.waiting(progress);
   }
@@ -224,7 +267,7 @@ class Run {
     result.parameters = plan_.cases[index].parameters;
     result.summary = missing_row(plan_.summary, plan_.cases[index].known);
     result.verdict = verdict;
-    result.reason = std::move(reason);
+    result.reason = reason.empty() ? "no reason was given" : std::move(reason);
     return result;
   }
 

@@ -18,10 +18,18 @@ struct CaseReport {
   double seconds = 0.0;
 };
 
+/// A case that runs, for so long, and the stage that it has told of.
+struct RunningCase {
+  std::string id;
+  double seconds = 0.0;
+  std::optional<CaseStage> stage{};
+  double stage_seconds = 0.0;  ///< since the stage began
+};
+
 /// What the runner tells while cases run.
 struct RunProgress {
   std::size_t done = 0, total = 0;
-  std::vector<std::string> running{};  ///< ids, the oldest first
+  std::vector<RunningCase> running{};  ///< the oldest first
 };
 
 struct RunOptions {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "analysis/reference/reference_solution.hpp"
@@ -19,6 +20,8 @@ enum class ReferenceArithmetic {
 std::string to_string(ReferenceArithmetic arithmetic);
 /// The key `reference`, which chooses it by these names.
 settings::Setting reference_setting(ReferenceArithmetic& arithmetic);
+/// The same for kinds that had no such key once: a file that does not give it has the same resolved text as then.
+settings::Setting reference_setting(std::optional<ReferenceArithmetic>& arithmetic);
 
 /// A problem that several cases share, with its end state in closed form or as a certified reference, which
 /// the first case to need it computes for all. Safe to use from several threads.

@@ -22,6 +22,12 @@ namespace {
 
 std::atomic<bool> worker_interrupted{false};
 
+/// Whether this process is a worker, whose socket has the descriptor 3.
+bool is_worker = false;
+
+/// In the length of a message: it is a note and no answer.
+constexpr std::uint64_t note_flag = std::uint64_t{1} << 63;
+
 void on_interrupt(int) {
   worker_interrupted.store(true);
 }
@@ -84,6 +90,7 @@ class Pinned {
   // Files and locks of the parent are not the worker's to hold.
   ::dup2(socket, 3);
   ::close_range(4, ~0U, 0);
+  is_worker = true;
   WorkerProcess::Task task;
   while (read_all(3, &task, sizeof task)) {
     const Pinned pinned(task.pinned);
@@ -128,7 +135,14 @@ WorkerProcess::~WorkerProcess() {
   ::close(socket_);
 }
 
+void WorkerProcess::tell(const std::string& note) {
+  if (!is_worker) return;
+  const std::uint64_t size = note.size() | note_flag;
+  if (send_all(3, &size, sizeof size)) send_all(3, note.data(), note.size());
+}
+
 void WorkerProcess::assign(Task task) {
+  note_.clear();
   send_all(socket_, &task, sizeof task);  // a worker that has died shows at the next `receive`
 }
 
@@ -144,13 +158,18 @@ std::optional<std::string> WorkerProcess::receive() {
     if (got == 0 || (errno != EAGAIN && errno != EWOULDBLOCK)) reap();
     break;
   }
-  std::uint64_t size = 0;
-  if (received_.size() < sizeof size) return std::nullopt;
-  std::memcpy(&size, received_.data(), sizeof size);
-  if (received_.size() < sizeof size + size) return std::nullopt;
-  std::string answer = received_.substr(sizeof size, size);
-  received_.erase(0, sizeof size + size);
-  return answer;
+  while (true) {
+    std::uint64_t size = 0;
+    if (received_.size() < sizeof size) return std::nullopt;
+    std::memcpy(&size, received_.data(), sizeof size);
+    const bool is_note = (size & note_flag) != 0;
+    size &= ~note_flag;
+    if (received_.size() < sizeof size + size) return std::nullopt;
+    std::string message = received_.substr(sizeof size, size);
+    received_.erase(0, sizeof size + size);
+    if (!is_note) return message;
+    note_ = std::move(message);
+  }
 }
 
 void WorkerProcess::reap() {

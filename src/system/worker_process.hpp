@@ -22,6 +22,10 @@ class WorkerProcess {
   /// Does a task and returns the answer; runs in the worker. `interrupted` is set by `interrupt`.
   using Work = std::function<std::string(std::size_t index, const std::atomic<bool>& interrupted)>;
 
+  /// Called in a worker while it works: sends a note to the parent, which `note` gives there. Elsewhere it does
+  /// nothing.
+  static void tell(const std::string& note);
+
   /// Throws std::system_error where the machine has no room for another process.
   explicit WorkerProcess(const Work& work);
   /// Ends it at once, whatever it does.
@@ -34,6 +38,8 @@ class WorkerProcess {
   int descriptor() const { return socket_; }
   /// Reads what is there; the answer if it is complete. After the worker's end, see `has_ended`.
   std::optional<std::string> receive();
+  /// The last note that the worker has sent about its present task; empty: none.
+  const std::string& note() const { return note_; }
   bool has_ended() const { return has_ended_; }
   /// Why, in words: "ended by signal 11 (Segmentation fault)". Only after `has_ended`.
   const std::string& how_it_ended() const { return how_it_ended_; }
@@ -49,7 +55,7 @@ class WorkerProcess {
 
   pid_t id_ = -1;
   int socket_ = -1;
-  std::string received_;
+  std::string received_, note_;
   bool has_ended_ = false;
   std::string how_it_ended_;
 };

@@ -135,6 +135,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadInput{"JobsZero", {"run", "s.toml", "--jobs", "0"}, {{"s.toml", ""}}, {"--jobs", "found 0"}},
         BadInput{"JobsNegative", {"run", "s.toml", "--jobs", "-2"}, {{"s.toml", ""}}, {"--jobs", "-2"}},
+        BadInput{"JobsBeyondAnInteger",
+                 {"run", "s.toml", "--jobs", "99999999999999999999"},
+                 {{"s.toml", ""}},
+                 {"--jobs", "found 99999999999999999999,"}},
         BadInput{"JobsText", {"run", "s.toml", "--jobs", "all"}, {{"s.toml", ""}}, {"--jobs", "all"}},
         BadInput{"SecondStudyBroken",
                  {"run", "s.toml", "t.toml", "-o", "results"},

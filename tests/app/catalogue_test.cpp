@@ -61,13 +61,51 @@ TEST(List, EverythingElseHasNameTitleAndDescription) {
 TEST(List, TablesNameWhatTheJsonNames) {
   const ScratchDirectory scratch;
   for (const std::string what : {"methods", "problems", "scenes", "studies", "oracles"}) {
-    const ProcessResult table = run(scratch.path(), {"list", what});
+    std::vector<std::string> call = {"list", what};
+    if (what == "methods") call.emplace_back("--all");
+    const ProcessResult table = run(scratch.path(), call);
     EXPECT_EQ(table.exit_code, 0);
     const std::string names =
         with_json({"list", what, "--json"}, "print('\\n'.join(m['name'] for m in x))\n");
     std::istringstream lines(names);
     for (std::string name; std::getline(lines, name);) EXPECT_THAT(table.out, HasSubstr(name));
   }
+}
+
+TEST(List, FiltersAreThePropertiesThatTheJsonGives) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> filters = {
+      {{"--family", "RUNGE-KUTTA"}, "'runge-kutta' in m['family'].lower()"},
+      {{"--order", "4"}, "m['order'] == 4"},
+      {{"--explicit"}, "m['explicit']"},
+      {{"--implicit"}, "not m['explicit']"},
+      {{"--adaptive"}, "m['adaptive']"},
+      {{"--symplectic"}, "m['symplectic']"},
+      {{"--a-stable"}, "m['a_stable']"},
+      {{"--l-stable", "--family", "diagonally"}, "m['l_stable'] and 'diagonally' in m['family']"}};
+  for (const auto& [filter, property] : filters) {
+    std::vector<std::string> call = {"list", "methods", "--json"};
+    const std::string all = with_json(call, "print([m['name'] for m in x if " + property + "])\n");
+    call.insert(call.end(), filter.begin(), filter.end());
+    EXPECT_EQ(with_json(call, "assert x\nprint([m['name'] for m in x])\n"), all) << property;
+  }
+  const ScratchDirectory scratch;
+  const ProcessResult table = run(scratch.path(), {"list", "methods", "--symplectic", "--order", "8"});
+  EXPECT_THAT(table.out, HasSubstr("yoshida8"));
+  EXPECT_THAT(table.out, ::testing::Not(HasSubstr("yoshida6")));
+  const ProcessResult unknown = run(scratch.path(), {"list", "methods", "--family", "gauss"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("expected a part of one of"));
+  EXPECT_EQ(run(scratch.path(), {"list", "problems", "--explicit"}).exit_code, 2);
+}
+
+TEST(List, MethodsStartWithTheFirstOnesAndTheFamilies) {
+  const ScratchDirectory scratch;
+  const std::string text = run(scratch.path(), {"list", "methods"}).out;
+  for (const std::string& name : catalog::first_methods()) EXPECT_THAT(text, HasSubstr(name));
+  for (const catalog::MethodEntry& entry : catalog::methods()) {
+    EXPECT_THAT(text, HasSubstr(entry.info().family.substr(0, 10)));
+  }
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 60);
 }
 
 TEST(Describe, KnowsEveryListedName) {

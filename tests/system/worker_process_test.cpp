@@ -48,6 +48,20 @@ TEST(WorkerProcess, RunsInAnotherProcess) {
   EXPECT_NE(*id, std::to_string(::getpid()));
 }
 
+TEST(WorkerProcess, PassesNotesOnBeforeTheAnswerAndForgetsThemWithTheTask) {
+  WorkerProcess worker([](std::size_t index, const std::atomic<bool>&) {
+    for (std::size_t k = 0; k < index; ++k) WorkerProcess::tell("note " + std::to_string(k));
+    return std::to_string(index);
+  });
+  worker.assign({.index = 1000});
+  EXPECT_EQ(answer_of(worker), "1000");
+  EXPECT_EQ(worker.note(), "note 999");
+  worker.assign({.index = 0});
+  EXPECT_EQ(answer_of(worker), "0");
+  EXPECT_EQ(worker.note(), "");
+  WorkerProcess::tell("by no worker");  // goes nowhere
+}
+
 TEST(WorkerProcess, SendsAnswersThatAreEmptyOrLargerThanAPipe) {
   WorkerProcess worker([](std::size_t index, const std::atomic<bool>&) {
     std::string text(index, '.');

@@ -234,7 +234,8 @@ ExtrapolationTableau harmonic_extrapolation(int rows) {
 }
 
 ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const double> times,
-                                            const ExtrapolationSettings& settings) {
+                                            const ExtrapolationSettings& settings,
+                                            const ExtrapolationProgress& progress) {
   ExtrapolationRun run;
   Tableau tableau(*ivp.system, settings.tableau, run.work);
   const std::size_t last_row = settings.tableau.rows() - 1;
@@ -303,6 +304,7 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
         const Float128 next = H * growth(attempt, last_row);
         proposal = std::min(interval, is_shortened ? std::max(proposal, next) : next);
         if (verdict == Cutter::Verdict::crossed) proposal = std::min(proposal, Float128(cuts.limit() - t));
+        if (progress) progress(static_cast<double>(Float128((t - ivp.t0) / interval)));
       } else {
         run.work.rejected_steps += 1;
         if (is_smallest)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct ExtrapolationRun {
   Work work;
 };
 
+/// Told after each accepted step: the part of the interval that is done, in [0, 1]. May throw to end the run.
+using ExtrapolationProgress = std::function<void(double fraction)>;
+
 /// Integrates `ivp` in binary128 by Gragg–Bulirsch–Stoer extrapolation with adaptive steps and gives the
 /// state at each of `times` (non-decreasing, ≥ t₀), which steps hit exactly.
 ///
@@ -53,6 +57,7 @@ struct ExtrapolationRun {
 /// t: kinks and jumps of the right-hand side are thereby closed in on until they no longer matter. Numerical
 /// failure is told by the status. [Gragg 1965; Bulirsch, Stoer 1966; Hairer, Nørsett, Wanner 1993, II.9]
 ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const double> times,
-                                            const ExtrapolationSettings& settings);
+                                            const ExtrapolationSettings& settings,
+                                            const ExtrapolationProgress& progress = {});
 
 }  // namespace fw::analysis

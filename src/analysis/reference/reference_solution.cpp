@@ -89,11 +89,17 @@ ReferenceSolution certified_reference(const Ivp& ivp, std::span<const double> ti
   check_input(ivp, times, options);
   const auto start = std::chrono::steady_clock::now();
   ReferenceSolution reference;
-  const ExtrapolationRun coarse = integrate_by_extrapolation(ivp, times, options.coarse);
+  constexpr double share = ReferenceOptions::coarse_share;
+  ExtrapolationProgress tell_coarse, tell_fine;
+  if (options.progress) {
+    tell_coarse = [&](double part) { options.progress(share * part); };
+    tell_fine = [&](double part) { options.progress(share + (1.0 - share) * part); };
+  }
+  const ExtrapolationRun coarse = integrate_by_extrapolation(ivp, times, options.coarse, tell_coarse);
   add(reference.work, coarse.work);
   ExtrapolationRun fine;
   if (coarse.status.ok()) {
-    fine = integrate_by_extrapolation(ivp, times, options.fine);
+    fine = integrate_by_extrapolation(ivp, times, options.fine, tell_fine);
     add(reference.work, fine.work);
   }
   reference.work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -44,6 +44,11 @@ struct ReferenceOptions {
   /// The error bound has to stay below accuracy · (largest |y_i| met, but at least 1e-9 of the largest
   /// component's); otherwise the status is accuracy_not_reached.
   double accuracy = 1e-19;
+  /// Told after each step of either resolution: the part of the whole work that is done, in [0, 1], with the
+  /// coarse resolution as `coarse_share` of it. The digits do not depend on it. It may throw to end the work.
+  ExtrapolationProgress progress{};
+
+  static constexpr double coarse_share = 0.45;
 };
 
 /// y at each of `times` (non-decreasing, ≥ t₀; `ivp.t1` is not looked at), integrated twice in binary128; the

@@ -14,6 +14,18 @@ constexpr int max_newton_iterations = 50;
 constexpr double newton_tolerance = 1e-14;
 constexpr double linear_tolerance = 1e-13;
 
+/// Backwards in time dampers drive: M − c D of c < 0 loses its definiteness where |c| D exceeds M.
+Status explained(const Status& status, double c) {
+  if (c >= 0.0 || status.code != StatusCode::matrix_indefinite) return status;
+  return {
+      status.code,
+      fmt::format(
+          "a substep goes back in time by {:.3g} s, longer than mass / damping, so that its matrix is not "
+          "positive definite; expected a shorter step, or a method without negative substeps such as "
+          "velocity_verlet ({})",
+          -c, status.message)};
+}
+
 }  // namespace
 
 ImplicitKick::ImplicitKick(const SecondOrderSystem& system, Work& work) : system_(system), work_(work) {
@@ -69,7 +81,7 @@ Status ImplicitKick::solve(double t, double c, ConstVectorRef q, ConstVectorRef 
                                    10 * static_cast<std::uint64_t>(v.size()), workspace_);
     ++work_.linear_solves;
     work_.linear_iterations += solve.iterations;
-    if (!solve.status.ok()) return solve.status;
+    if (!solve.status.ok()) return explained(solve.status, c);
     v += correction_;
     ++work_.newton_iterations;
   }

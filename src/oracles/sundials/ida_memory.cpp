@@ -1,6 +1,9 @@
 #include "oracles/sundials/ida_memory.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string>
 
 namespace fw::oracles::detail {
 
@@ -122,6 +125,14 @@ void IdaMemory::collect_work(Work& work) const {
 }
 
 Status IdaMemory::failure(int flag, double t) const {
+  // Its own words, "tstop is behind current t", are of a product that underflows.
+  if (flag == IDA_ILL_INPUT && report_.message.find("tstop") != std::string::npos) {
+    return {StatusCode::step_too_small,
+            fmt::format(
+                "IDA at t = {:.6g}: what is left to the end at t = {:.6g}, {:.3g} s, is too short for it to "
+                "take a step; a later end mends it, or another method",
+                t, end_, end_ - t)};
+  }
   long last_linear_flag = 0;
   IDAGetLastLinFlag(get(), &last_linear_flag);
   return describe_failure(code_of_ida_flag(flag, last_linear_flag, report_), "IDA", t,

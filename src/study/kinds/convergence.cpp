@@ -59,12 +59,26 @@ void declare(Archive& a, Settings& s) {
 struct ConvergenceSpec {
   std::vector<std::string> methods;
   Settings settings;
+  std::optional<ReferenceArithmetic> arithmetic;
   std::vector<ProblemSpec> problems;
 };
 
+/// The section [convergence], of which one key is no setting of the measurement.
+struct ConvergenceSection {
+  ConvergenceSpec& spec;
+};
+
+void declare(Archive& a, ConvergenceSection& section) {
+  declare(a, section.spec.settings);
+  a(reference_setting(section.spec.arithmetic)
+        .doc("`binary64` for systems too large for it: two methods of orders 8 and 7 in double, about 9 "
+             "digits"));
+}
+
 void declare(Archive& a, ConvergenceSpec& spec) {
   a(methods_setting(spec.methods));
-  a.section({"convergence", "How orders are measured."}, spec.settings);
+  ConvergenceSection section{spec};
+  a.section({"convergence", "How orders are measured."}, section);
   a.sections(problem_sections, spec.problems);
   a.quick_section();
 }
@@ -392,10 +406,12 @@ class ConvergenceCase {
 
 void plan_convergence(const ConvergenceSpec& spec, const StudyInput& input, Plan& plan) {
   const Settings& settings = spec.settings;
-  const std::string identity = settings::identity_text(settings);
+  const ReferenceArithmetic arithmetic = spec.arithmetic.value_or(ReferenceArithmetic::binary128);
+  std::string identity = settings::identity_text(settings);
+  if (arithmetic != ReferenceArithmetic::binary128) identity += "reference = " + to_string(arithmetic) + "\n";
   const std::vector<std::string>& methods = checked_methods(spec.methods, input.file, input.catalog);
   for (StudyProblem& entry : make_problems(spec.problems, input, plan.warnings)) {
-    const auto problem = std::make_shared<const SharedProblem>(std::move(entry));
+    const auto problem = std::make_shared<const SharedProblem>(std::move(entry), arithmetic);
     for (std::size_t i = 0; i < methods.size(); ++i) {
       const std::string& call = methods[i];
       const std::shared_ptr<const Integrator> integrator = input.catalog.method(call);

@@ -181,8 +181,10 @@ class Ladder {
 
   CaseResult judge() {
     if (rungs_.empty()) {
-      return conclude(fmt::format("no run within {} right-hand sides has a relative error below {:g}: {}",
-                                  settings_.max_evaluations, settings_.start_error, last_status_.describe()));
+      return conclude(
+          fmt::format("no run within {} right-hand sides has a relative error below {:g}: {}",
+                      settings_.max_evaluations, settings_.start_error,
+                      last_status_.ok() ? "the finest run ends with a larger one" : last_status_.describe()));
     }
     std::vector<double> inverse_work, errors;
     for (const Rung& rung : rungs_) {
