@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress_bar.hpp"
+#include "app/run_notes.hpp"
 #include "catalog/methods.hpp"
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
@@ -30,7 +32,9 @@ namespace {
 
 struct SimulateArguments {
   std::string scene, method, output, petsc, checkpoint, continued;
+  std::vector<std::string> log_at, stop_at;
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
+  double maximum_step = std::numeric_limits<double>::infinity();
   bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
   bool has_end_time = false, has_frames = false, has_every = false;
   std::int64_t frames = 101;
@@ -62,6 +66,8 @@ class SimulationObserver final : public Observer {
 
 StepControl step_control(const SimulateArguments& arguments, const MethodInfo& info) {
   const bool has_tolerances = arguments.has_relative || arguments.has_absolute;
+  if (arguments.has_step && std::isfinite(arguments.maximum_step))
+    throw InputError("found --step and --maximum-step, expected one of them");
   if (arguments.has_step && has_tolerances)
     throw InputError("found --step and tolerances, expected either --step or --rtol and --atol");
   if (arguments.has_step && !info.has_fixed_step) {
@@ -83,8 +89,13 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
     };
     check("--rtol", arguments.relative_tolerance);
     check("--atol", arguments.absolute_tolerance);
+    if (!(arguments.maximum_step > 0.0)) {
+      throw InputError(
+          fmt::format("--maximum-step: found {}, expected a number of seconds > 0", arguments.maximum_step));
+    }
     return AdaptiveStep{.relative_tolerance = arguments.relative_tolerance,
-                        .absolute_tolerance = arguments.absolute_tolerance};
+                        .absolute_tolerance = arguments.absolute_tolerance,
+                        .maximum_step = arguments.maximum_step};
   }
   if (!arguments.has_step) {
     throw InputError(fmt::format("method \"{}\" has a fixed step: expected --step", info.name));
@@ -191,6 +202,8 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     }
     compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
     compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
+    compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step, adaptive.maximum_step);
+    arguments.maximum_step = adaptive.maximum_step;
     arguments.relative_tolerance = adaptive.relative_tolerance;
     arguments.absolute_tolerance = adaptive.absolute_tolerance;
     arguments.has_relative = arguments.has_absolute = true;
@@ -274,6 +287,10 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   scene.velocity.resize(0);
   const auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
   ivp.system = system;
+  std::vector<EventRequest> requests = parse_events(arguments.log_at, arguments.stop_at, *system);
+  if (!requests.empty() && (!arguments.checkpoint.empty() || from)) {
+    throw InputError("found events and a checkpoint: --log-at and --stop-at do not go with --checkpoint and --continue");
+  }
   if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
     throw InputError("the scene is no second-order system");
   }
@@ -302,10 +319,14 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
                         options.stop, writer);
     options.checkpoints = &*checkpoints;
   }
-  record::FrameSink& sink = checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer;
+  FrameClock clock(checkpoints ? static_cast<record::FrameSink&>(*checkpoints) : writer);
+  record::FrameSink& sink = clock;
   record::FrameSelector frames(ivp.t0, ivp.t1, control, wanted, sink);
   SimulationObserver observer(frames, arguments.end_time);
-  study::EnergyWatch watch(study::EnergyGauge(*system), observer);
+  std::optional<RunEvents> events;
+  if (!requests.empty()) events.emplace(std::move(requests), *system, observer);
+  study::EnergyWatch watch(study::EnergyGauge(*system),
+                           events ? static_cast<Observer&>(*events) : static_cast<Observer&>(observer));
   if (from) {
     repeat_frames(*from, frames, sink);
     const auto size = static_cast<std::size_t>(ivp.y0.size());
@@ -317,8 +338,13 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
   }
   Solution solution = integrator->solve(ivp, control, watch, options);
   observer.finish();
+  const std::optional<std::string> stopped_at = events ? events->stop(solution) : std::nullopt;
+  if (stopped_at) {
+    solution.status = {};
+    if (clock.time() < solution.time) sink.frame(solution.time, solution.state);
+  }
   solution.status = watch.judged(solution.status);
-  writer.finish(solution.status, solution.work);
+  writer.finish(solution.status, solution.work, tell(solution, events ? &*events : nullptr, stopped_at, !arguments.stop_at.empty()));
   if (arguments.xdmf) store::write_xdmf(arguments.output);
   print_summary(arguments.output, solution, frames, system->degenerate_spring_evaluations());
   if (!solution.status.ok()) {
@@ -351,6 +377,20 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
   CLI::Option* absolute =
       command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")
           ->type_name("A");
+  command
+      ->add_option("--maximum-step", arguments->maximum_step,
+                   "Longest step [s] of an adaptive method, own or foreign; default: none")
+      ->type_name("H");
+  command
+      ->add_option("--log-at", arguments->log_at,
+                   "Tell and store when this happens: contact[:PARTICLE], release[:PARTICLE], taut[:SPRING], "
+                   "slack[:SPRING], plane:NX,NY,NZ,D[:PARTICLE] (where n·x = D), energy:NAME (an extremum)")
+      ->type_name("EVENT")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--stop-at", arguments->stop_at, "End the run where this happens first; events as of --log-at")
+      ->type_name("EVENT")
+      ->allow_extra_args(false);
   CLI::Option* petsc = command
                            ->add_option("--petsc", arguments->petsc,
                                         "Options of a petsc: method or of the linear solver petsc in PETSc's "

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "catalog/declared_options.hpp"
 #include "catalog/integrator_options.hpp"
 #include "catalog/oracle_methods.hpp"
 #include "core/error.hpp"
 #include "integrators/energy_momentum/discrete_gradient.hpp"
+#include "integrators/loop/limited_integrator.hpp"
 #include "integrators/special/implicit_euler_linearised.hpp"
 #include "integrators/special/predicted_velocity_verlet.hpp"
 #include "integrators/special/verlet.hpp"
@@ -284,6 +288,23 @@ const MethodEntry& find_method(const std::string& name) {
 
 namespace {
 
+constexpr const char* maximum_step_option = "maximum_step";
+
+/// The call without the option that every adaptive method has, and its value.
+std::pair<MethodCall, std::optional<double>> without_maximum_step(MethodCall call) {
+  const auto found = call.options.find(maximum_step_option);
+  if (found == call.options.end()) return {std::move(call), std::nullopt};
+  const std::string text = found->second;
+  call.options.erase(found);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0)) {
+    throw InputError(fmt::format("method \"{}\": {}: found \"{}\", expected a number of seconds > 0", call.name,
+                                 maximum_step_option, text));
+  }
+  return {std::move(call), value};
+}
+
 /// What `make` makes of the entry of a call. Throws InputError for an option that the method does not take,
 /// and names the method where a value is refused.
 template <class Make>
@@ -311,12 +332,16 @@ std::unique_ptr<Integrator> make_method(const std::string& text) {
   return make_method(parse_method_call(text));
 }
 
-std::unique_ptr<Integrator> make_method(const MethodCall& call) {
-  return with_checked_options(call, [&](const MethodEntry& entry) { return entry.make(call.options); });
+std::unique_ptr<Integrator> make_method(const MethodCall& given) {
+  const auto [call, maximum_step] = without_maximum_step(given);
+  return with_checked_options(call, [&](const MethodEntry& entry) {
+    std::unique_ptr<Integrator> method = entry.make(call.options);
+    return maximum_step ? integrators::make_limited(std::move(method), *maximum_step) : std::move(method);
+  });
 }
 
 analysis::Theory theory_of_call(const std::string& text) {
-  const MethodCall call = parse_method_call(text);
+  const MethodCall call = without_maximum_step(parse_method_call(text)).first;
   return with_checked_options(call, [&](const MethodEntry& entry) { return entry.theory(call.options); });
 }
 

@@ -92,7 +92,8 @@ const std::vector<std::string>& first_methods();
 /// The entry of that name; throws InputError with the nearest name.
 const MethodEntry& find_method(const std::string& name);
 
-/// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]".
+/// The integrator of a call such as "rk4" or "implicit_euler_linearised[linear_solver=cholesky]". Methods that choose
+/// their steps take the option `maximum_step` [s] beside their own.
 std::unique_ptr<Integrator> make_method(const std::string& call);
 std::unique_ptr<Integrator> make_method(const MethodCall& call);
 

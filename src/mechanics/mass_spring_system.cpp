@@ -13,6 +13,25 @@ namespace fw::mechanics {
 
 namespace {
 
+/// The switches of a system's elements.
+class ElementSurfaces final : public SwitchingSurfaces {
+ public:
+  explicit ElementSurfaces(const MassSpringSystem& system) : system_(system) {}
+
+  void find(const StatePath<double>& path, SwitchSink<double>& sink) const override {
+    system_.elements().find_switches(path, system_.model().mass, sink);
+  }
+  void find(const StatePath<Float128>& path, SwitchSink<Float128>& sink) const override {
+    system_.elements().find_switches(path, system_.model().mass, sink);
+  }
+  void acting(const double* y, SwitchSink<double>& sink) const override {
+    system_.elements().find_acting(y, system_.model().mass, sink);
+  }
+
+ private:
+  const MassSpringSystem& system_;
+};
+
 MassSpringModel validated(MassSpringModel model) {
   validate_particles(model);
   return model;
@@ -28,6 +47,7 @@ MassSpringSystem::MassSpringSystem(MassSpringModel model, SystemParts parts)
   for (const int i : model_.fixed) std::fill_n(fixed_.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, 1);
   make_elements();
   derived_ = std::make_unique<Derived>();
+  surfaces_ = std::make_unique<const ElementSurfaces>(*this);
 }
 
 MassSpringSystem::~MassSpringSystem() = default;
@@ -123,6 +143,10 @@ void MassSpringSystem::jacobian(double, ConstVectorRef y, SparseMatrix& J) const
 
 void MassSpringSystem::jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const {
   first_order_product(*this, t, y, w, out);
+}
+
+const SwitchingSurfaces* MassSpringSystem::switching_surfaces() const {
+  return elements_->has_switches() ? surfaces_.get() : nullptr;
 }
 
 Index MassSpringSystem::degrees_of_freedom() const {

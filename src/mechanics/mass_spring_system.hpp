@@ -63,6 +63,8 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override;
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override;
   const SecondOrderSystem* second_order() const override { return this; }
+  /// Contact with and release by obstacles, ropes that become taut or slack; null without any.
+  const SwitchingSurfaces* switching_surfaces() const override;
 
   // SecondOrderSystem
   Index degrees_of_freedom() const override;
@@ -128,6 +130,7 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   std::unique_ptr<const ElementAssembly> elements_;
   std::unique_ptr<const ForceKernel> kernel_;  ///< null: the elements' own
   std::unique_ptr<Derived> derived_;
+  std::unique_ptr<const SwitchingSurfaces> surfaces_;
   ForceClass force_class_ = ForceClass::position;
   std::uint64_t element_revision_ = 0, pattern_revision_ = 0;
   mutable std::atomic<std::uint64_t> degenerate_{0};

@@ -21,6 +21,10 @@ struct Solution {
   Vector state;       ///< y at that time
   Status status;
   Work work;
+  std::uint64_t switches = 0;  ///< kinks and jumps of the right-hand side that steps were cut at
+  /// What makes the numbers doubtful although the run ended well, sentences for people: contacts shorter than
+  /// the steps, solids crossed within one.
+  std::vector<std::string> warnings{};
 };
 
 /// What is known of a scheme, for lists, claims and checks.

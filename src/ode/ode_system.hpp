@@ -9,6 +9,8 @@
 
 namespace fw {
 
+class SwitchingSurfaces;
+
 /// The first-order system ẏ = f(t, y), y ∈ ℝᴺ.
 ///
 /// Every right-hand side is written once over the scalar and offered in three arithmetics: double for the
@@ -41,6 +43,10 @@ class OdeSystem {
   /// The structure y = (q, v), M v̇ = f(t, q, v), or null where there is none. Then N = 2n, the first n
   /// entries of y are positions and the last n velocities.
   virtual const SecondOrderSystem* second_order() const { return nullptr; }
+
+  /// Where f has kinks or jumps, or null where it has none or does not know of any. Only systems with
+  /// `second_order` have them. May change where elements do.
+  virtual const SwitchingSurfaces* switching_surfaces() const { return nullptr; }
 
   /// Changes when `jacobian_pattern` does, which may happen between steps and never during one (contacts that
   /// are found at accepted steps). A system whose pattern is fixed leaves it at 0.

@@ -51,6 +51,9 @@ struct SolveOptions {
   /// and the observer sees the steps after it only. Empty: the run begins at its start. InputError where it
   /// is of another run.
   std::string_view resume{};
+  /// Steps that the method chooses end at the kinks and jumps that the system announces. Only for showing
+  /// what happens otherwise.
+  bool cut_at_switches = true;
 };
 
 }  // namespace fw

@@ -17,9 +17,14 @@ namespace {
 /// The steps of a library. They have to end at each multiple of a constant step, or at the end time only.
 class ForeignSteps final : public integrators::StepSource {
  public:
+  /// `given_to_library` outlives the steps.
   ForeignSteps(const MethodInfo& info, const Ivp& ivp, const StepControl& control,
-               std::unique_ptr<ForeignStepper> stepper)
-      : info_(info), start_(ivp.t0), end_(ivp.t1), stepper_(std::move(stepper)) {
+               const StepControl& given_to_library, std::unique_ptr<ForeignStepper> stepper)
+      : info_(info),
+        start_(ivp.t0),
+        end_(ivp.t1),
+        tolerances_(std::get_if<AdaptiveStep>(&given_to_library)),
+        stepper_(std::move(stepper)) {
     if (const auto* fixed = std::get_if<FixedStep>(&control)) {
       step_ = fixed->step;
       total_ = integrators::count_steps_of(info, ivp, *fixed).total();
@@ -27,7 +32,11 @@ class ForeignSteps final : public integrators::StepSource {
   }
 
   Status propose(integrators::LoopStep& step) override {
-    step.end = step_ == 0.0 || step.index >= total_ ? end_ : start_ + static_cast<double>(step.index) * step_;
+    if (step_ == 0.0) {
+      step.end = std::min(end_, step.limit);
+    } else {
+      step.end = step.index >= total_ ? end_ : start_ + static_cast<double>(step.index) * step_;
+    }
     return {};
   }
 
@@ -47,6 +56,11 @@ class ForeignSteps final : public integrators::StepSource {
     return {};
   }
 
+  const AdaptiveStep* tolerances() const override { return tolerances_; }
+  /// The library is past it: it starts anew.
+  void take_back(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  /// The limit of the step tells the library.
+  void shorten(double) override {}
   void accept(const integrators::LoopStep&) override {}
   bool has_dense_output() const override { return stepper_->has_dense_output(); }
   void interpolate(double t, VectorRef out) override { stepper_->interpolate(t, out); }
@@ -62,6 +76,7 @@ class ForeignSteps final : public integrators::StepSource {
   double start_, end_;
   double step_ = 0.0;  ///< 0: the library chooses
   std::uint64_t total_ = 0;
+  const AdaptiveStep* tolerances_;  ///< null: constant steps
   std::unique_ptr<ForeignStepper> stepper_;
 };
 
@@ -96,7 +111,7 @@ Solution OracleIntegrator::do_solve(const Ivp& ivp, const StepControl& control, 
   return integrators::run_loop(
       info_, ivp,
       [&](Work& work) -> std::unique_ptr<integrators::StepSource> {
-        return std::make_unique<ForeignSteps>(info_, ivp, control,
+        return std::make_unique<ForeignSteps>(info_, ivp, control, given_to_library,
                                               make_stepper_(ivp, given_to_library, work));
       },
       observer, options,

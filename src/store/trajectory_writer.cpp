@@ -76,6 +76,19 @@ void write_counters(hid_t file, const Work& work) {
   write_dataset(group, "seconds", "s", {}, std::span<const double>(&work.seconds, 1));
 }
 
+void write_notes(hid_t file, const RunNotes& notes) {
+  if (!notes.warnings.empty()) {
+    std::string text;
+    for (const std::string& warning : notes.warnings) text += (text.empty() ? "" : "\n") + warning;
+    write_attribute(file, "warnings", text);
+  }
+  if (!notes.stopped_at.empty()) write_attribute(file, "stopped_at", notes.stopped_at);
+  if (!notes.has_events) return;
+  const Handle group = make_group(file, "events");
+  write_dataset(group, "time", "s", {notes.event_times.size()}, std::span<const double>(notes.event_times));
+  write_dataset(group, "event", "", {notes.event_names.size()}, std::span<const std::string>(notes.event_names));
+}
+
 }  // namespace
 
 struct TrajectoryWriter::Datasets {
@@ -157,7 +170,7 @@ void TrajectoryWriter::frame(double time, ConstVectorRef state) {
   });
 }
 
-void TrajectoryWriter::finish(const Status& status, const Work& work) {
+void TrajectoryWriter::finish(const Status& status, const Work& work, const RunNotes& notes) {
   if (!datasets_ || !datasets_->file.is_open()) throw InputError("the trajectory is finished already");
   const LibraryLock lock;
   // Whatever happens below, nothing but the published file remains.
@@ -165,6 +178,7 @@ void TrajectoryWriter::finish(const Status& status, const Work& work) {
   d->file.guarded([&] {
     d->close();
     write_counters(d->file.id(), work);
+    write_notes(d->file.id(), notes);
     write_attribute(d->file.id(), "solver_status", status.describe());
     write_status(d->file.id(), status.ok());
   });

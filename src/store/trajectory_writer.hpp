@@ -29,6 +29,15 @@ struct FrameQuantities {
   std::function<void(double t, ConstVectorRef q, ConstVectorRef v, std::span<double> values)> evaluate;
 };
 
+/// What is told of a run besides its numbers.
+struct RunNotes {
+  std::vector<std::string> warnings{};     ///< sentences, see `Solution::warnings`
+  std::string stopped_at{};                ///< the event that ended it; empty: none
+  bool has_events = false;                 ///< events were looked for
+  std::vector<double> event_times{};       ///< [s], in their order
+  std::vector<std::string> event_names{};  ///< as many
+};
+
 /// Streams a trajectory of a mass-spring system into a result file of kind "trajectory". Memory is bounded by
 /// a few megabytes whatever the number of frames and particles. The file appears under its name when `finish`
 /// has returned and not before; without `finish` nothing remains.
@@ -46,7 +55,7 @@ class TrajectoryWriter final : public record::FrameSink {
 
   /// Completes and publishes the file: status "complete" if the solver succeeded, else "incomplete" with what
   /// was computed; the attribute `solver_status` says why. Throws SystemError.
-  void finish(const Status& status, const Work& work);
+  void finish(const Status& status, const Work& work, const RunNotes& notes = {});
 
  private:
   struct Datasets;

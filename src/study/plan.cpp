@@ -13,6 +13,7 @@ Solution RunContext::solve(const Integrator& integrator, const Ivp& ivp, const S
                            Observer& observer) const {
   Solution solution = integrator.solve(ivp, control, observer, {.stop = stop});
   if (solution.status.code == StatusCode::interrupted) throw Interrupted{};
+  if (warnings != nullptr) warnings->push_back(fmt::format("{}", fmt::join(solution.warnings, "; ")));
   return solution;
 }
 

@@ -21,6 +21,8 @@ struct RunContext {
   StopToken stop{};
   /// Directory of certified references that were computed before; empty: none are kept.
   std::filesystem::path reference_cache{};
+  /// Takes the warnings of the runs, a text per run (`Solution::warnings`), empty where there are none. Null: nobody.
+  std::vector<std::string>* warnings = nullptr;
 
   /// `integrator.solve` under the token. Throws Interrupted where that stopped the run.
   Solution solve(const Integrator& integrator, const Ivp& ivp, const StepControl& control,

@@ -34,10 +34,24 @@ double seconds_since(Clock::time_point start) {
 /// The first letter of a worker's answer.
 constexpr char is_result = 'r', is_failure = 'f', is_interrupted = 'i', is_not_applicable = 'n';
 
+/// What a verdict rests on in doubtful runs: how many there were, and what is wrong with the last, which is mostly
+/// the finest.
+std::string doubts_of(const std::vector<std::string>& warnings) {
+  const auto doubtful = std::ranges::count_if(warnings, [](const std::string& text) { return !text.empty(); });
+  if (doubtful == 0) return "";
+  const auto last = std::find_if(warnings.rbegin(), warnings.rend(), [](const auto& text) { return !text.empty(); });
+  return fmt::format("; warning of {} of {} runs: {}", doubtful, warnings.size(), *last);
+}
+
 /// Runs a case in the worker; whatever happens is an answer.
 std::string answer_of(const PlannedCase& planned, const RunContext& context) {
   try {
-    return is_result + encode(planned.run(context));
+    std::vector<std::string> warnings;
+    RunContext watched = context;
+    watched.warnings = &warnings;
+    CaseResult result = planned.run(watched);
+    result.reason += doubts_of(warnings);
+    return is_result + encode(result);
   } catch (const Interrupted&) {
     return std::string(1, is_interrupted);
   } catch (const NotApplicable& error) {

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "integrators/loop/switch_cutter.hpp"
 
 namespace fw::analysis {
 namespace {
@@ -165,6 +168,43 @@ void add_compensated(State& y, State& carry, const State& increment) {
   }
 }
 
+/// The largest velocity met, or what crosses the positions in the interval.
+double velocity_scale(const State& scale, double interval) {
+  const auto half = scale.begin() + static_cast<std::ptrdiff_t>(scale.size() / 2);
+  const auto velocity = static_cast<double>(*std::max_element(half, scale.end()));
+  return velocity > 0.0 ? velocity : static_cast<double>(*std::max_element(scale.begin(), half)) / interval;
+}
+
+using Cutter = integrators::SwitchCutter<Float128>;
+
+/// Cuts steps at the switches that the system announces.
+class Cuts {
+ public:
+  Cuts(const OdeSystem& system, double tolerance, double t0, double t1)
+      : surfaces_(system.switching_surfaces()), tolerance_(tolerance), interval_(t1 - t0) {
+    if (surfaces_ != nullptr) {
+      cutter_.emplace(0.0, tolerance, 1e4 * epsilon * std::max(std::abs(t0), std::abs(t1)));
+    }
+  }
+
+  Float128 limit() const { return cutter_ ? cutter_->limit() : Float128(std::numeric_limits<double>::infinity()); }
+  Cutter::Verdict judge(const Float128& t, const Float128& H, const State& y, const State& increment,
+                        const State& scale) {
+    if (!cutter_) return Cutter::Verdict::accepted;
+    y_new_.resize(y.size());
+    for (std::size_t i = 0; i < y.size(); ++i) y_new_[i] = y[i] + increment[i];
+    cutter_->set_absolute_tolerance(tolerance_ * velocity_scale(scale, interval_));
+    return cutter_->judge(*surfaces_, {t, H, y.data(), y_new_.data()});
+  }
+  std::string last() const { return place_of(cutter_->last()); }
+
+ private:
+  const SwitchingSurfaces* surfaces_;
+  double tolerance_, interval_;
+  std::optional<Cutter> cutter_;
+  State y_new_;
+};
+
 double first_step(const State& y, const State& slope, double largest_step) {
   double state_norm = 0.0, slope_norm = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
@@ -207,6 +247,7 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
   Float128 proposal = 0;
   bool slope_is_current = false;
   int rejections_in_a_row = 0;
+  Cuts cuts(*ivp.system, settings.tolerance, ivp.t0, end);
   const auto fail = [&](StatusCode code, const std::string& what) {
     run.status = {code, fmt::format("{} at t = {:.6g} of {:.6g}", what, static_cast<double>(t), end)};
     return run;
@@ -228,9 +269,10 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
       const Float128 remaining = target - t;
       const Float128 wish = std::max(smallest_step, std::min(proposal, largest_step));
       const bool reaches_target = wish >= remaining;
-      const Float128 t_new = reaches_target
-                                 ? Float128(target)
-                                 : Float128(t + (2 * wish > remaining ? Float128(remaining / 2) : wish));
+      const Float128 t_wished = reaches_target
+                                    ? Float128(target)
+                                    : Float128(t + (2 * wish > remaining ? Float128(remaining / 2) : wish));
+      const Float128 t_new = std::min(t_wished, cuts.limit());
       const Float128 H = t_new - t;
       const bool is_shortened = H < proposal;
 
@@ -241,6 +283,14 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
         if (attempt.error > 1.0 && ++run.forced_steps > settings.forced_step_limit) {
           return fail(StatusCode::step_too_small, "the error test still fails with the smallest steps");
         }
+        const Cutter::Verdict verdict = cuts.judge(t, H, y, tableau.best(attempt.row), run.scale);
+        if (verdict == Cutter::Verdict::again) {
+          run.work.rejected_steps += 1;
+          continue;
+        }
+        if (verdict == Cutter::Verdict::chatters) {
+          return fail(StatusCode::step_too_small, fmt::format("the right-hand side switches without end, last at {},", cuts.last()));
+        }
         add_compensated(y, carry, tableau.best(attempt.row));
         for (std::size_t i = 0; i < y.size(); ++i) run.scale[i] = std::max(run.scale[i], Float128(abs(y[i])));
         t = t_new;
@@ -249,6 +299,7 @@ ExtrapolationRun integrate_by_extrapolation(const Ivp& ivp, std::span<const doub
         rejections_in_a_row = 0;
         const Float128 next = H * growth(attempt, last_row);
         proposal = std::min(interval, is_shortened ? std::max(proposal, next) : next);
+        if (verdict == Cutter::Verdict::crossed) proposal = std::min(proposal, Float128(cuts.limit() - t));
       } else {
         run.work.rejected_steps += 1;
         if (is_smallest)

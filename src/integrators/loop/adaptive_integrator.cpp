@@ -55,7 +55,14 @@ class AdaptiveSteps final : public StepSource {
     } else if (2.0 * h_ > rest) {
       h_ = std::max(0.5 * rest, smallest);  // two even steps instead of a long and a short one
     }
+    taken_ = h_;
     step.end = t + h_;
+    is_cut_ = step.limit < (step.is_last ? t1_ : step.end);
+    if (is_cut_) {
+      step.end = step.limit;
+      step.is_last = false;
+      taken_ = step.end - t;
+    }
     return {};
   }
 
@@ -73,14 +80,20 @@ class AdaptiveSteps final : public StepSource {
               fmt::format("at t = {:.6g} the step failed {} times in a row{}", step.start, failures_,
                           last_failure_.empty() ? "" : "; last failure: " + last_failure_)};
     }
-    h_ *= controller_.after_rejection(estimate_);
+    h_ = taken_ * controller_.after_rejection(estimate_);
     return {};
   }
+
+  const AdaptiveStep* tolerances() const override { return &control_; }
+  /// An attempt leaves no trace.
+  void take_back(double, ConstVectorRef) override {}
+  void shorten(double h) override { h_ = std::min(h_, h); }
 
   void accept(const LoopStep& step) override {
     stepper_->accept();
     start_ = step.start;
     end_ = step.end;
+    if (is_cut_) return;  // what was wished for stays
     h_ = std::min(h_ * controller_.after_acceptance(estimate_), control_.maximum_step);
   }
 
@@ -112,7 +125,7 @@ class AdaptiveSteps final : public StepSource {
  private:
   /// The error in units of the tolerance; NaN where the step could not be made.
   double estimate(double t, ConstVectorRef y, VectorRef y_new) {
-    const Status status = stepper_->attempt(t, h_, y, y_new, error_);
+    const Status status = stepper_->attempt(t, taken_, y, y_new, error_);
     if (!status.ok()) {
       last_failure_ = status.describe();
       return std::numeric_limits<double>::quiet_NaN();
@@ -130,6 +143,8 @@ class AdaptiveSteps final : public StepSource {
   StepSizeController controller_;
   Vector error_;
   double h_;
+  double taken_ = 0.0;   ///< length of the last attempt: h_, or what is left of it
+  bool is_cut_ = false;  ///< it ends where the loop wants it to
   double start_ = 0.0, end_ = 0.0;  ///< of the step accepted last
   double estimate_ = 0.0;           ///< of the last attempt
   int failures_ = 0;                ///< in a row

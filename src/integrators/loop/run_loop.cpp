@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 #include "core/error.hpp"
 #include "core/work_counters.hpp"
 #include "integrators/loop/hermite_interpolant.hpp"
 #include "integrators/loop/run_checks.hpp"
+#include "integrators/loop/switch_guard.hpp"
 
 namespace fw::integrators {
 
@@ -37,10 +39,12 @@ class Loop {
       return std::move(solution_);
     }
     const std::unique_ptr<StepSource> source = make_source(solution_.work);
+    guard_.emplace(ivp_, *source, options_);
     if (!options_.resume.empty()) load(*source);
     if (options_.checkpoints != nullptr) save(*source);  // refused now rather than after an hour
     solution_.status = advance(*source);
     source->collect_work(solution_.work);
+    guard_->report(solution_);
     return std::move(solution_);
   }
 
@@ -62,7 +66,7 @@ class Loop {
       if (options_.stop.stop_requested()) {
         return {StatusCode::interrupted, fmt::format("interrupted by the user at t = {:.6g}", t)};
       }
-      LoopStep step{.index = steps_ + 1, .start = t};
+      LoopStep step{.index = steps_ + 1, .start = t, .limit = guard_->limit()};
       if (Status status = source.propose(step); !status.ok()) return status;
       if (steps_ + solution_.work.rejected_steps >= maximum_steps_) {
         return {StatusCode::step_limit,
@@ -73,6 +77,12 @@ class Loop {
       if (step.is_last) step.end = ivp_.t1;
       if (Status status = check_state(y_new, step.end, step.index); !status.ok()) return status;
       if (Status status = check_progress(step); !status.ok()) return status;
+      const SwitchGuard::Verdict verdict = guard_->judge(step, y, y_new);
+      if (verdict == SwitchGuard::Verdict::again) {
+        ++solution_.work.rejected_steps;
+        source.take_back(t, y);
+        continue;
+      }
       source.accept(step);
       ++steps_;
       ++solution_.work.accepted_steps;
@@ -91,7 +101,9 @@ class Loop {
       y.swap(y_new);
       if (step.is_last) return {};
       if (!go_on) return {StatusCode::stopped_by_observer, fmt::format("stopped at t = {:.6g}", t)};
-      if (change != Change::none) source.restart(t, y);
+      if (verdict == SwitchGuard::Verdict::chatters) return chatter();
+      if (change != Change::none || verdict == SwitchGuard::Verdict::crossed) source.restart(t, y);
+      if (verdict == SwitchGuard::Verdict::crossed) source.shorten(guard_->limit() - t);
       if (options_.checkpoints != nullptr && options_.checkpoints->is_due(t)) {
         save(source);
         options_.checkpoints->take(t, writer_.bytes());
@@ -104,6 +116,12 @@ class Loop {
     if (steps_without_progress_ < most_steps_without_progress) return {};
     return {StatusCode::step_too_small,
             fmt::format("at t = {:.6g} the step fell below the rounding of t", step.end)};
+  }
+
+  Status chatter() const {
+    return {StatusCode::step_too_small,
+            fmt::format("at t = {:.6g} the right-hand side switches without end, last at {}", solution_.time,
+                        guard_->last())};
   }
 
   void save(StepSource& source) {
@@ -128,6 +146,7 @@ class Loop {
     archive.visit("state", solution_.state);
     archive.visit("steps", steps_);
     archive.visit("steps without progress", steps_without_progress_);
+    guard_->serialise(archive);
     source.serialise(archive);
     // Last: what a source evaluates to put itself back is not counted.
     integrators::serialise(archive, solution_.work);
@@ -142,6 +161,7 @@ class Loop {
   const SolveOptions& options_;
   std::uint64_t maximum_steps_;
   std::uint64_t steps_ = 0, steps_without_progress_ = 0;
+  std::optional<SwitchGuard> guard_;
   Solution solution_;
   StateWriter writer_;
 };

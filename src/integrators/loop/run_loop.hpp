@@ -14,8 +14,8 @@ namespace fw::integrators {
 using StepSourceFactory = std::function<std::unique_ptr<StepSource>(Work& work)>;
 
 /// The one time loop, of own and foreign schemes with constant and with chosen steps:
-///   propose, attempt (again while rejected), check of the state, accept, hook, observer, restart,
-///   checkpoint.
+///   propose, attempt (again while rejected), check of the state, switches of the right-hand side (again where
+///   one is to be the end of the step), accept, hook, observer, restart, checkpoint.
 /// It owns the view of the start, the choice of the dense output, the end of the last step, the limit of
 /// steps (accepted and rejected), steps that no longer advance time, the texts of the states in which a run
 /// ends, the count of accepted steps, the user's interrupt, hooks and checkpoints. Nothing is allocated after

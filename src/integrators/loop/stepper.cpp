@@ -41,6 +41,9 @@ class FixedSteps final : public StepSource {
     return status;
   }
 
+  const AdaptiveStep* tolerances() const override { return nullptr; }
+  void take_back(double t, ConstVectorRef y) override { stepper_->restart(t, y); }
+  void shorten(double) override {}
   void accept(const LoopStep&) override {}
   bool has_dense_output() const override { return own_interpolant_ != nullptr; }
   void interpolate(double t, VectorRef out) override {

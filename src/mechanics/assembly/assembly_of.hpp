@@ -9,6 +9,7 @@
 #include "mechanics/assembly/element_assembly.hpp"
 #include "mechanics/assembly/energy.hpp"
 #include "mechanics/assembly/force.hpp"
+#include "mechanics/assembly/switch_search.hpp"
 #include "mechanics/assembly/tangent_product.hpp"
 
 namespace fw::mechanics {
@@ -46,6 +47,25 @@ class AssemblyOf final : public ElementAssembly {
   }
   bool has_kinks() const override {
     return any_of([](const auto& batch) { return batch.has_kinks(); });
+  }
+  bool has_switches() const override {
+    return any_of([]<class Elements>(const Elements& batch) {
+      if constexpr (HasSwitches<Elements>) return batch.has_kinks() && batch.size() > 0;
+      return false;
+    });
+  }
+  void find_switches(const StatePath<double>& path, const std::vector<double>& mass,
+                     SwitchSink<double>& sink) const override {
+    for_each_switching_batch([&](const auto& batch) { search_switches(batch, {path, mass, is_fixed_}, sink); });
+  }
+  void find_switches(const StatePath<Float128>& path, const std::vector<double>& mass,
+                     SwitchSink<Float128>& sink) const override {
+    for_each_switching_batch([&](const auto& batch) { search_switches(batch, {path, mass, is_fixed_}, sink); });
+  }
+  void find_acting(const double* y, const std::vector<double>& mass, SwitchSink<double>& sink) const override {
+    const StatePath<double> standing{0.0, 0.0, y, y};
+    for_each_switching_batch(
+        [&](const auto& batch) { list_acting(batch, {standing, mass, is_fixed_}, sink); });
   }
   bool is_internal() const override {
     return !any_of([](const auto& batch) { return !batch.is_internal(); });
@@ -154,6 +174,12 @@ class AssemblyOf final : public ElementAssembly {
     for (std::size_t k = 0; k < batches_.size(); ++k) {
       std::visit([&](const auto& batch) { visit(k, batch); }, batches_[k]);
     }
+  }
+  template <class Visit>
+  void for_each_switching_batch(Visit visit) const {
+    for_each_batch([&]<class Elements>(std::size_t, const Elements& batch) {
+      if constexpr (HasSwitches<Elements>) visit(batch);
+    });
   }
   template <class Holds>
   bool any_of(Holds holds) const {

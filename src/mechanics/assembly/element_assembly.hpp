@@ -13,6 +13,7 @@
 #include "mechanics/elements/element_labels.hpp"
 #include "ode/energies.hpp"
 #include "ode/second_order_system.hpp"
+#include "ode/switching_surfaces.hpp"
 
 namespace fw::mechanics {
 
@@ -33,6 +34,14 @@ class ElementAssembly : public ForceKernel {
   virtual ForceClass force_class(std::size_t batch) const = 0;
   /// Whether a force or a derivative of it jumps somewhere.
   virtual bool has_kinks() const = 0;
+  /// Whether some elements announce where their forces switch.
+  virtual bool has_switches() const = 0;
+  /// See `SwitchingSurfaces`; one mass per particle.
+  virtual void find_switches(const StatePath<double>& path, const std::vector<double>& mass,
+                             SwitchSink<double>& sink) const = 0;
+  virtual void find_switches(const StatePath<Float128>& path, const std::vector<double>& mass,
+                             SwitchSink<Float128>& sink) const = 0;
+  virtual void find_acting(const double* y, const std::vector<double>& mass, SwitchSink<double>& sink) const = 0;
   /// Whether forces and torques sum to zero: momenta are conserved where no particle is fixed.
   virtual bool is_internal() const = 0;
   /// The nodes of each batch's elements, for a `BlockPattern`.

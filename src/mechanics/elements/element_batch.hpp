@@ -19,7 +19,9 @@ namespace fw::mechanics {
 ///  `validate(particles)`;
 ///  - `damping_force(e, x, v)` where an elastic element has a damper; `discrete_force(e, x, new_x, mean_v)`
 ///    where energy-momentum schemes have something better than the midpoint; `rate(e)` [N/m] where it can be
-///    stiffer than others.
+///    stiffer than others;
+///  - where it `has_kinks()`, `phase(e, x, v)`, `stays(e, phase, paths)`, `kink(...)` and `switch_number(e)`
+///    (see switch_search.hpp): integrators know then where their steps have to end.
 /// `degenerate` goes up by one for an element that has no direction.
 using ElementBatch =
     std::variant<GravityDragBatch, SpringBatch<SpringLaw::hooke>, SpringBatch<SpringLaw::strain>,

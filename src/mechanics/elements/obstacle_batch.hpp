@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "mechanics/elements/obstacle_force.hpp"
+#include "mechanics/elements/obstacle_switching.hpp"
 #include "mechanics/elements/obstacle_tangent.hpp"
 #include "mechanics/elements/tangent_blocks.hpp"
 
@@ -51,6 +52,23 @@ struct ObstacleBatch {
                           std::uint64_t&) const {
     return obstacle_dissipated_power(*obstacle, shape(), x[0], v[0]);
   }
+
+  /// See `obstacle_phase`.
+  template <class Scalar>
+  int phase(std::size_t, const NodeVectors<Scalar, 1>& x, const NodeVectors<Scalar, 1>& v) const {
+    return obstacle_phase(*obstacle, shape(), x[0], v[0]);
+  }
+  /// See `obstacle_stays`.
+  template <class Scalar>
+  bool stays(std::size_t, int phase, const NodePaths<Scalar, 1>& path) const {
+    return obstacle_stays(*obstacle, shape(), phase, path[0]);
+  }
+  /// See `obstacle_kink`.
+  Kink kink(std::size_t, int from, int to, const NodeVectors<double, 1>& x, const NodeVectors<double, 1>& v,
+            double speed, double acceleration) const {
+    return obstacle_kink(*obstacle, shape(), from, to, x[0], v[0], speed, acceleration);
+  }
+  std::size_t switch_number(std::size_t) const { return number; }
 
   ForceClass force_class() const {
     return obstacle->damping > 0.0 ? ForceClass::velocity : ForceClass::position;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "mechanics/elements/rope_switching.hpp"
 #include "mechanics/elements/spring_discrete_gradient.hpp"
 #include "mechanics/elements/spring_force.hpp"
 #include "mechanics/elements/spring_tangent.hpp"
@@ -70,6 +71,25 @@ struct SpringBatch {
   }
   /// dσ/dL where the spring acts [N/m].
   double rate(std::size_t e) const { return spring_rate<Law>(parameters(e)); }
+
+  /// Of a rope, see `rope_phase`; other springs do not switch.
+  template <class Scalar>
+  int phase(std::size_t e, const NodeVectors<Scalar, 2>& x, const NodeVectors<Scalar, 2>&) const
+      requires(Law == SpringLaw::tension_only) {
+    return rope_phase(parameters(e), x[1] - x[0]);
+  }
+  /// See `rope_stays`.
+  template <class Scalar>
+  bool stays(std::size_t e, int phase, const NodePaths<Scalar, 2>& path) const {
+    return rope_stays(parameters(e), phase, path);
+  }
+  /// A rope has a kink where its tension begins.
+  Kink kink(std::size_t e, int, int to, const NodeVectors<double, 2>&, const NodeVectors<double, 2>&, double speed,
+            double) const {
+    const double stiffness = rate(e);
+    return {.rate = stiffness * speed, .stiffness = to != 0 ? stiffness : 0.0};
+  }
+  std::size_t switch_number(std::size_t e) const { return begin + e; }
 
   ForceClass force_class() const {
     const auto damping = std::span(springs->damping).subspan(begin, size());

@@ -8,7 +8,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
                      const Vector& dydt0, const AdaptiveStep& tolerances, Work& work)
     : form_(std::move(form)),
       start_(t0),
-      end_(t1),
+      stop_time_(t1),
       relative_tolerance_(tolerances.relative_tolerance),
       absolute_tolerance_(tolerances.absolute_tolerance),
       work_(work),
@@ -82,6 +82,10 @@ Status IdaMemory::correct_initial_values(double first_output) {
 
 Status IdaMemory::advance(double limit, double& t) {
   report_.message.clear();
+  if (limit != stop_time_) {
+    stop_time_ = limit;
+    require(IDASetStopTime(get(), limit), "IDASetStopTime");
+  }
   const int flag = IDASolve(get(), limit, &t, state_vector_.get(), slope_vector_.get(), IDA_ONE_STEP);
   report_.guard.rethrow();
   if (flag < 0) return failure(flag, t);
@@ -95,7 +99,7 @@ void IdaMemory::restart(double t, ConstVectorRef y, ConstVectorRef dydt) {
   slope_ = dydt;
   require(IDAReInit(get(), t, state_vector_.get(), slope_vector_.get()), "IDAReInit");
   linear_solver_.forget();
-  require(IDASetStopTime(get(), end_), "IDASetStopTime");
+  require(IDASetStopTime(get(), stop_time_), "IDASetStopTime");
   report_ = {};
   check_stall_ = StallCheck(t);
 }

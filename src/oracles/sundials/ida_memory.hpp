@@ -52,7 +52,7 @@ class IdaMemory {
   Status failure(int flag, double t) const;
 
   std::unique_ptr<DaeForm> form_;
-  double start_, end_, relative_tolerance_, absolute_tolerance_;
+  double start_, stop_time_, relative_tolerance_, absolute_tolerance_;
   Vector scale_per_step_;
   Work& work_;
   RunReport report_;

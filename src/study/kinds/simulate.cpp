@@ -188,6 +188,7 @@ void declare(Archive& a, FieldSpec& field) {
 /// Tolerances of methods that choose their own steps.
 struct Tolerances {
   double relative = 1e-8, absolute = 1e-10;
+  std::optional<double> maximum_step;
 };
 
 void declare(Archive& a, Tolerances& tolerances) {
@@ -196,6 +197,11 @@ void declare(Archive& a, Tolerances& tolerances) {
         .positive()
         .doc("of methods that choose their own steps"));
   a(setting("absolute", tolerances.absolute).unit("SI").positive().doc("likewise"));
+  a(setting("maximum_step", tolerances.maximum_step)
+        .unit("s")
+        .positive()
+        .default_text("none")
+        .doc("the longest step that they may take"));
 }
 
 struct SimulateSpec {
@@ -264,8 +270,13 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
   const Catalog& catalog = input.catalog;
   const std::vector<std::string>& methods = checked_methods(study.methods, spec, catalog);
   const std::vector<double> steps = study.steps.value_or(std::vector<double>());
-  const AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
-                              .absolute_tolerance = study.tolerances.absolute};
+  AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
+                        .absolute_tolerance = study.tolerances.absolute};
+  std::string identity_of_limit;  // none: the identity that the case had before there was one
+  if (study.tolerances.maximum_step) {
+    adaptive.maximum_step = *study.tolerances.maximum_step;
+    identity_of_limit = fmt::format("maximum step = {}\n", adaptive.maximum_step);
+  }
   const auto frames = static_cast<std::uint64_t>(study.frames);
   const std::int64_t construction = study.construction_steps;
 
@@ -303,8 +314,8 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
           integrator->info().is_adaptive && (steps.empty() || !integrator->info().has_fixed_step);
       if (by_tolerances) {
         add(adaptive, "",
-            fmt::format("relative = {}\nabsolute = {}\n", adaptive.relative_tolerance,
-                        adaptive.absolute_tolerance));
+            fmt::format("relative = {}\nabsolute = {}\n{}", adaptive.relative_tolerance,
+                        adaptive.absolute_tolerance, identity_of_limit));
         continue;
       }
       if (steps.empty())
