@@ -120,9 +120,11 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
                       {number_text(summary.kinetic_end), number_text(summary.potential_end),
                        number_text(summary.total_end())});
   out += energies.text();
-  out += fmt::format("\nenergy drift {} J, at most {} J", number_text(summary.drift),
-                     number_text(summary.largest_drift));
-  if (summary.total_start() != 0.0) {
+  out += fmt::format("\nenergy {} {} J, at most {} J", summary.is_driven ? "change" : "drift",
+                     number_text(summary.drift), number_text(summary.largest_drift));
+  if (summary.is_driven) {
+    out += ", forces or supports over time do work";
+  } else if (summary.total_start() != 0.0) {
     const double scale = std::abs(summary.total_start());
     out += fmt::format(" (relative {}, at most {})", number_text(summary.drift / scale),
                        number_text(summary.largest_drift / scale));

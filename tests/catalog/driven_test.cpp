@@ -16,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 /// q̈ = −ω² q + a cos νt along x with ω = 2, ν = 3, a = 1.5 from q = 1, v = 0.5: a spring of length zero.
-const char* forced_oscillator = R"(
+const char* forced_oscillator = R"toml(
 [particles]
 position = [[0, 0, 0], [1, 0, 0]]
 velocity = [[0, 0, 0], [0.5, 0, 0]]
@@ -29,7 +29,7 @@ rest_length = 0.0
 [[force]]
 particle = 1
 expression = ["1.5*cos(3*t)", "0", "0"]
-)";
+)toml";
 
 double closed_form(double t) {
   const double amplitude = 1.5 / (4.0 - 9.0);
@@ -37,7 +37,7 @@ double closed_form(double t) {
 }
 
 /// Supports and a force over time, with dampers: along x, and a spring that turns in the plane.
-const char* moved_supports = R"(
+const char* moved_supports = R"toml(
 [world]
 rayleigh = { mass = 0.25, stiffness = 0.01 }
 [particles]
@@ -55,7 +55,7 @@ expression = ["0.2*sin(3*t)", "0.1*t^2", "0"]
 [[force]]
 particle = 1
 expression = ["0", "exp(-t)", "sin(2*t)"]
-)";
+)toml";
 
 Ivp ivp_of(const char* text, double end) {
   return scene::make_ivp(scene::parse_scene(text, "a.toml"), end);
@@ -106,7 +106,8 @@ void expect_orders(const Ivp& ivp, const Vector& expected, const std::vector<std
     const double fine = end_error(*method, ivp, FixedStep{.step = 1.0 / 64.0}, expected).error;
     EXPECT_LT(fine, 0.1) << info.name;
     const double order = std::log2(coarse.error / fine);
-    if (fine > 1e-10) EXPECT_GT(order, order_on(info, *ivp.system) - 0.45) << info.name << ": error " << fine;
+    if (fine < 1e-10) continue;
+    EXPECT_GT(order, order_on(info, *ivp.system) - 0.45) << info.name << ": error " << fine;
   }
   EXPECT_GT(count, 80);
   EXPECT_EQ(refused, refusing);
@@ -130,7 +131,7 @@ TEST(Driven, EveryMethodFollowsSupportsThatMove) {
 
 TEST(Driven, TheEnergyWatchCountsWorkFromOutside) {
   // At rest, driven in resonance: all energy comes from outside, the amplitude is t/4 · 3.
-  const Ivp resonance = ivp_of(R"(
+  const Ivp resonance = ivp_of(R"toml(
 [particles]
 position = [[0, 0, 0], [0, 0, 0]]
 mass = 1.0
@@ -142,8 +143,8 @@ rest_length = 0.0
 [[force]]
 particle = 1
 expression = ["3*sin(2*t)", "0", "0"]
-)",
-                              20.0);
+)toml",
+                               20.0);
   const auto& system = dynamic_cast<const mechanics::MassSpringSystem&>(*resonance.system);
   const auto judged = [&](const char* method, const StepControl& control) {
     NullObserver observer;
@@ -161,14 +162,14 @@ expression = ["3*sin(2*t)", "0", "0"]
 
 /// A pulse by a table, m = 1: v rises to ½, x = ∫∫ in closed form.
 TEST(Driven, StepsEndAtTheCornersOfATable) {
-  const Ivp pulse = ivp_of(R"(
+  const Ivp pulse = ivp_of(R"toml(
 [particles]
 position = [[0, 0, 0]]
 mass = 1.0
 [[force]]
 particle = 0
 table = { t = [5.0, 5.001, 5.002], value = [[0, 0, 0], [500, 0, 0], [0, 0, 0]] }
-)",
+)toml",
                            10.0);
   const double expected = 0.5 * (10.0 - 5.001);
   const auto end = [&](const char* name, bool cut) {

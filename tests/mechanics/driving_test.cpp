@@ -16,7 +16,7 @@ using formula::ExpressionFunction;
 using formula::VectorFunction;
 using testing::HasSubstr;
 
-VectorFunction path() {
+VectorFunction support_path() {
   return VectorFunction(
       ExpressionFunction{Expression("0.3*sin(2*t)"), Expression("t^2/5"), Expression("1-cos(t)")});
 }
@@ -33,13 +33,13 @@ MassSpringModel driven_model() {
   model.springs.add(0, 1, {.stiffness = 40.0, .damping = 0.5, .rest_length = 0.8});
   model.springs.add(1, 2, {.stiffness = 60.0, .damping = 0.25, .rest_length = 0.9});
   model.anchors = {{0, {0.1, 0, 0}, 30.0, 0.75}, {2, {2, 0, 0.25}, 20.0, 0.5}};
-  model.support_motions = {{{0, 1}, path()}};
+  model.support_motions = {{{0, 1}, support_path()}};
   model.forces = {
       {{1, 2}, VectorFunction(ExpressionFunction{Expression("cos(3*t)"), Expression("2"), Expression("t")})}};
   return model;
 }
 
-Vector state() {
+Vector driven_state() {
   Vector y = Vector::Zero(18);
   y.head(9) << 0.2, -0.1, 0.1, 1.1, 0.2, 0.0, 2.0, 0.0, 0.0;
   y.segment(9, 6) << 0.3, -0.4, 0.5, -0.2, 0.7, 0.1;
@@ -53,13 +53,13 @@ TEST(Driving, IsTheForceOfASupportThatMoves) {
   still.forces.clear();
   const double t = 0.7;
   // The same anchors where they are at t, with the velocity of the supports in the dampers.
-  for (Anchor& anchor : still.anchors) anchor.rest_position += path()(t).value;
+  for (Anchor& anchor : still.anchors) anchor.rest_position += support_path()(t).value;
   const MassSpringSystem driven(model), standing(still);
-  const Vector y = state();
+  const Vector y = driven_state();
   Vector f(9), g(9);
   driven.force(t, y.head(9), y.tail(9), f);
   standing.force(t, y.head(9), y.tail(9), g);
-  const Vec3<double> rate = path()(t).rate;
+  const Vec3<double> rate = support_path()(t).rate;
   g.segment(0, 3) += 0.75 * Vector::Map(&rate.x, 3);
   g.segment(3, 3) += (Vector(3) << std::cos(3 * t), 2, t).finished();
   EXPECT_LT((f - g).lpNorm<Eigen::Infinity>(), 1e-13);
@@ -70,7 +70,7 @@ TEST(Driving, IsTheForceOfASupportThatMoves) {
 
 TEST(Driving, EveryArithmeticHasIt) {
   const MassSpringSystem system(driven_model());
-  const Vector y = state();
+  const Vector y = driven_state();
   const double t = 1.3;
   Vector expected(18);
   system.rhs(t, y, expected);
@@ -91,7 +91,7 @@ TEST(Driving, EveryArithmeticHasIt) {
 /// d(T + V)/dt = P_ext − P_dissipated along the motion, by central differences of the energy.
 TEST(Driving, PowersCloseTheBalance) {
   const MassSpringSystem system(driven_model());
-  const Vector y = state();
+  const Vector y = driven_state();
   for (const double t : {0.0, 0.4, 2.1}) {
     Vector slope(18);
     system.rhs(t, y, slope);
@@ -111,7 +111,7 @@ TEST(Driving, PowersCloseTheBalance) {
 
 TEST(Driving, MassDragIsInTheTangent) {
   const MassSpringSystem system(driven_model());
-  const Vector y = state();
+  const Vector y = driven_state();
   SparseMatrix J = system.jacobian_pattern();
   system.jacobian(0.5, y, J);
   const double delta = 1e-6;
@@ -125,7 +125,7 @@ TEST(Driving, MassDragIsInTheTangent) {
 
 TEST(Driving, ASplittingPutsItToTheSoftForces) {
   const MassSpringSystem system(driven_model());
-  const Vector y = state();
+  const Vector y = driven_state();
   Vector f(9), stiff(9), soft(9);
   system.force(0.9, y.head(9), y.tail(9), f);
   system.force_splitting()->stiff_force(0.9, y.head(9), y.tail(9), stiff);
@@ -146,7 +146,7 @@ TEST(Driving, CornersOfTablesAreSwitches) {
   const MassSpringSystem system(model);
   ASSERT_NE(system.switching_surfaces(), nullptr);
   EXPECT_FALSE(system.is_smooth());
-  const Vector y = state();
+  const Vector y = driven_state();
   const auto at = [&](double start, double length) {
     Corners<double> sink;
     system.switching_surfaces()->find({start, length, y.data(), y.data()}, sink);

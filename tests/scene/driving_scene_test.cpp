@@ -14,11 +14,11 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 /// In lines 1 to 6.
-const std::string two_springs =
+const std::string driven_pair =
     "[particles]\nposition = [[0,0,0], [1,0,0], [2,0,0]]\nmass = 2\n"
     "[springs]\nbetween = [[0,1], [1,2]]\nstiffness = [10, 30]\n";
 
-std::string message_of(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   try {
     parse_scene(text, "s.toml");
   } catch (const InputError& error) {
@@ -29,7 +29,7 @@ std::string message_of(const std::string& text) {
 
 TEST(DrivingScene, ReadsForcesAndSupportsInEveryForm) {
   const Scene scene =
-      parse_scene(two_springs +
+      parse_scene(driven_pair +
                       "[[force]]\nparticle = 1\nvalue = [1, 2, 3]\n"
                       "[[force]]\nparticle = 'all'\ntable = { t = [0, 2], value = [[0,0,0], [4,0,0]] }\n"
                       "[[force]]\nparticle = [0, 2]\nexpression = ['2*cos(t)', '0', 't']\n"
@@ -63,19 +63,19 @@ TEST(DrivingScene, ReadsForcesAndSupportsInEveryForm) {
 
 TEST(DrivingScene, RayleighDampingIsDragByMassAndDampersByRate) {
   const std::string rest =
-      two_springs + "damping = [0, 0.5]\n[[anchor]]\nparticle = 0\nstiffness = 5\ndamping = 1\n";
+      driven_pair + "damping = [0, 0.5]\n[[anchor]]\nparticle = 0\nstiffness = 5\ndamping = 1\n";
   const Scene scene = parse_scene("[world]\nrayleigh = { mass = 0.25, stiffness = 0.1 }\n" + rest, "a.toml");
   EXPECT_EQ(scene.model.mass_drag, 0.25);
   EXPECT_THAT(scene.model.springs.damping, ElementsAre(1.0, 3.5));
   EXPECT_EQ(scene.model.anchors[0].damping, 1.5);
   expect_same_scene(scene, parse_scene(scene.resolved_toml, "b.toml"));
   const Scene strain = parse_scene(
-      "[world]\nrayleigh = { stiffness = 0.1 }\n" + two_springs + "law = 'strain'\nrest_length = 0.5\n",
+      "[world]\nrayleigh = { stiffness = 0.1 }\n" + driven_pair + "law = 'strain'\nrest_length = 0.5\n",
       "a.toml");
   EXPECT_THAT(strain.model.springs.damping, ElementsAre(2.0, 6.0)) << "k/l0 is the rate under strain";
   // The damping matrix of a chain at rest is αM + βK.
   const Ivp ivp = make_ivp(
-      parse_scene("[world]\nrayleigh = { mass = 0.25, stiffness = 0.1 }\n" + two_springs, "a.toml"), 1.0);
+      parse_scene("[world]\nrayleigh = { mass = 0.25, stiffness = 0.1 }\n" + driven_pair, "a.toml"), 1.0);
   const auto& system = *ivp.system->second_order();
   SparseMatrix K = system.tangent_pattern(), D = system.tangent_pattern();
   const Vector still = Vector::Zero(9);
@@ -88,7 +88,7 @@ TEST(DrivingScene, RayleighDampingIsDragByMassAndDampersByRate) {
 
 TEST(DrivingScene, TextsOfScenesWithoutAreAsBefore) {
   const std::string text =
-      parse_scene(two_springs + "[[anchor]]\nparticle = 0\nstiffness = 5\n", "a.toml").resolved_toml;
+      parse_scene(driven_pair + "[[anchor]]\nparticle = 0\nstiffness = 5\n", "a.toml").resolved_toml;
   for (const char* key : {"force", "rayleigh", "expression", "table", "velocity = [0.5"}) {
     EXPECT_EQ(text.find(key), std::string::npos) << key;
   }
@@ -105,7 +105,7 @@ TEST(DrivingScene, WarnsOfForcesOnFixedParticles) {
 }
 
 TEST(DrivingScene, ErrorsNamePlaceFoundAndExpected) {
-  const std::string force = two_springs + "[[force]]\nparticle = 1\n";
+  const std::string force = driven_pair + "[[force]]\nparticle = 1\n";
   const std::vector<std::pair<std::string, std::string>> scenes = {
       {force,
        "s.toml:7: [force[0]]: found none of \"value\", \"table\", \"expression\", expected exactly one"},
@@ -124,15 +124,15 @@ TEST(DrivingScene, ErrorsNamePlaceFoundAndExpected) {
        "s.toml:9: [force[0].table]: t[2]: found 1, expected a finite number > 1"},
       {force + "table = { t = [0, 1], value = [[0,0,0]] }\n",
        "s.toml:9: [force[0].table]: value: found 1 vectors, expected 2, one per time"},
-      {two_springs + "[[anchor]]\nparticle = 1\nstiffness = 1\nvelocity = [0,0,1]\ntable = { t = [0], value "
+      {driven_pair + "[[anchor]]\nparticle = 1\nstiffness = 1\nvelocity = [0,0,1]\ntable = { t = [0], value "
                      "= [[0,0,0]] }\n",
        "s.toml:11: [anchor[0]] table: found it beside \"velocity\", expected one of \"velocity\", \"table\", "
        "\"expression\""}};
-  for (const auto& [text, message] : scenes) EXPECT_EQ(message_of(text), message) << text;
-  EXPECT_NE(message_of(force + "expression = ['1', '2']\n"), "no error");
-  EXPECT_NE(message_of("[world]\nrayleigh = { mass = -1 }\n" + two_springs), "no error");
-  EXPECT_NE(message_of("[world]\nrayleigh = { mss = 1 }\n" + two_springs), "no error");
-  EXPECT_NE(message_of(two_springs + "[[force]]\nparticle = 3\nvalue = [0,0,1]\n"), "no error");
+  for (const auto& [text, message] : scenes) EXPECT_EQ(refusal_of(text), message) << text;
+  EXPECT_NE(refusal_of(force + "expression = ['1', '2']\n"), "no error");
+  EXPECT_NE(refusal_of("[world]\nrayleigh = { mass = -1 }\n" + driven_pair), "no error");
+  EXPECT_NE(refusal_of("[world]\nrayleigh = { mss = 1 }\n" + driven_pair), "no error");
+  EXPECT_NE(refusal_of(driven_pair + "[[force]]\nparticle = 3\nvalue = [0,0,1]\n"), "no error");
 }
 
 }  // namespace

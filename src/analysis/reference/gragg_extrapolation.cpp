@@ -183,7 +183,7 @@ class Cuts {
   Cuts(const OdeSystem& system, double tolerance, double t0, double t1)
       : surfaces_(system.switching_surfaces()), tolerance_(tolerance), interval_(t1 - t0) {
     if (surfaces_ != nullptr) {
-      cutter_.emplace(0.0, tolerance, 1e4 * epsilon * std::max(std::abs(t0), std::abs(t1)));
+      cutter_.emplace(0.0, tolerance, 1e4 * float128_epsilon * std::max(std::abs(t0), std::abs(t1)));
     }
   }
 

@@ -49,7 +49,7 @@ void add(Work& sum, const Work& work) {
 /// coordinates only: their difference is a sample of the error and not a bound. Ten times that, and no less than what
 /// some thousand roundings of the largest value do.
 Float128 error_behind_switches(const Float128& fine, const Float128& coarse, const Float128& scale) {
-  return std::max(Float128(10 * abs(fine - coarse)), Float128(1e4 * epsilon * scale));
+  return std::max(Float128(10 * abs(fine - coarse)), Float128(1e4 * float128_epsilon * scale));
 }
 
 /// The first component and time whose error is above what was asked for, as a failure.
