@@ -42,10 +42,15 @@ def obstacles(spec):
 
 
 def anchors(spec, start):
-    """(particle, place) of every anchor; one without a place of its own holds its particle where that starts."""
+    """(particle, place) of every anchor that stands; one without a place of its own holds its particle where that starts.
+    Particles given by the name of a group are left out: only the program knows which they are."""
     found = []
     for entry in tables(spec, "anchor"):
-        particles = numpy.atleast_1d(entry.get("particle", [])).astype(int)
+        if any(key in entry for key in ("velocity", "table", "expression")):
+            continue  # its support moves
+        given = entry.get("particle", [])
+        listed = given if isinstance(given, list) else [given]
+        particles = numpy.array([one for one in listed if not isinstance(one, str)], int)
         place = numbers(entry.get("position"))
         places = start[particles] if place is None else numpy.broadcast_to(place, (particles.size, 3))
         found += list(zip(particles, places))
@@ -56,7 +61,8 @@ def is_free(spec, fixed):
     """Whether nothing acts from outside, so that the momenta are constant."""
     world = spec.get("world", {})
     return not (len(fixed) or any(spec.get(name) for name in ("anchor", "obstacle", "force", "constraint"))
-                or numpy.any(numpy.asarray(world.get("gravity", 0.0), float)) or world.get("drag", 0.0))
+                or numpy.any(numpy.asarray(world.get("gravity", 0.0), float)) or world.get("drag", 0.0)
+                or world.get("rayleigh", {}).get("mass", 0.0))
 
 
 def drawn_springs(spec, springs, count):

@@ -119,6 +119,10 @@ std::string to_text(const SceneFacts& facts) {
                                     range_of(model.springs.stiffness, "N/m (N of the law strain)")));
   line("anchors, obstacles", fmt::format("{}, {}", model.anchors.size(), model.obstacles.size()));
   line("forces", facts.system->force_class() == ForceClass::velocity ? "with damping" : "without damping");
+  if (facts.system->is_driven()) {
+    line("depend on time",
+         fmt::format("{} forces, {} sets of supports", model.forces.size(), model.support_motions.size()));
+  }
   const Index n = facts.system->degrees_of_freedom();
   const Energies energies = facts.system->energies(facts.state.head(n), facts.state.tail(n));
   line("energy at the start",

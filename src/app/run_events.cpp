@@ -76,8 +76,8 @@ double power(const mechanics::MassSpringSystem& system, const std::string& name,
   const double size = std::max(q.lpNorm<Eigen::Infinity>(), 1e-3);
   const double delta = std::cbrt(std::numeric_limits<double>::epsilon()) * size / speed;
   const Vector later = q + delta * v, earlier = q - delta * v;
-  return (energy_of(system.energies(later, v), name) - energy_of(system.energies(earlier, v), name)) /
-         (2.0 * delta);
+  const double after = energy_of(system.energies(t + delta, later, v), name);  // supports move along
+  return (after - energy_of(system.energies(t - delta, earlier, v), name)) / (2.0 * delta);
 }
 
 std::vector<EventFunction> functions_of(const std::vector<EventRequest>& requests,

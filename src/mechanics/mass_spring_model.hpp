@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/vec3.hpp"
+#include "mechanics/driving_force.hpp"
 #include "mechanics/elements/element_batch.hpp"
 
 namespace fw::mechanics {
@@ -17,6 +18,9 @@ struct MassSpringModel {
   std::vector<Anchor> anchors;
   std::vector<Obstacle> obstacles;
   std::vector<ElementBatch> further_elements{};  ///< of any type of the list; they own what they hold
+  std::vector<DrivingForce> forces{};            ///< functions of time
+  std::vector<SupportMotion> support_motions{};  ///< anchors whose rest position moves
+  double mass_drag = 0.0;  ///< α of Rayleigh damping: force −α m v on every particle [1/s]
 };
 
 }  // namespace fw::mechanics

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "mechanics/driving.hpp"
 #include "mechanics/model_elements.hpp"
 #include "mechanics/model_validation.hpp"
 
@@ -20,9 +21,11 @@ class ElementSurfaces final : public SwitchingSurfaces {
 
   void find(const StatePath<double>& path, SwitchSink<double>& sink) const override {
     system_.elements().find_switches(path, system_.model().mass, sink);
+    if (system_.driving() != nullptr) system_.driving()->find_corners(path, sink);
   }
   void find(const StatePath<Float128>& path, SwitchSink<Float128>& sink) const override {
     system_.elements().find_switches(path, system_.model().mass, sink);
+    if (system_.driving() != nullptr) system_.driving()->find_corners(path, sink);
   }
   void acting(const double* y, SwitchSink<double>& sink) const override {
     system_.elements().find_acting(y, system_.model().mass, sink);
@@ -55,8 +58,10 @@ MassSpringSystem::~MassSpringSystem() = default;
 void MassSpringSystem::make_elements() {
   auto elements = parts_.elements ? parts_.elements(model_) : assemble<ElementBatch>(model_);
   auto kernel = parts_.kernel ? parts_.kernel(model_) : nullptr;
+  auto driving = Driving::is_needed(model_) ? std::make_shared<const Driving>(model_) : nullptr;
   elements_ = std::move(elements);
   kernel_ = std::move(kernel);
+  driving_ = std::move(driving);
   force_class_ = elements_->force_class();
 }
 
@@ -83,7 +88,7 @@ void MassSpringSystem::change_elements(MassSpringModel model) {
     derived_ = std::make_unique<Derived>();
   }
   if (before->splitting != nullptr) {
-    before->splitting->split(*elements_, block_pattern());
+    before->splitting->split(*elements_, block_pattern(), driving_);
     std::call_once(derived_->splitting_once, [&] { derived_->splitting = std::move(before->splitting); });
   }
 }
@@ -100,29 +105,35 @@ Index MassSpringSystem::size() const {
   return 6 * particle_count();
 }
 
-template <class Scalar>
-void MassSpringSystem::evaluate_rhs(const Scalar* y, Scalar* dydt) const {
+template <class Time, class Scalar>
+void MassSpringSystem::evaluate_force(const Time& t, const Scalar* q, const Scalar* v, Scalar* f) const {
+  count_degenerate(evaluate_elements(q, v, f));
+  if (driving_ != nullptr) driving_->add_force(t, f);
+}
+
+template <class Time, class Scalar>
+void MassSpringSystem::evaluate_rhs(const Time& t, const Scalar* y, Scalar* dydt) const {
   const std::size_t particles = model_.mass.size();
   const std::size_t n = 3 * particles;
   std::copy_n(y + n, n, dydt);
   for (const int i : model_.fixed) store3(dydt, i, Vec3<Scalar>{});
   Scalar* acceleration = dydt + n;
-  count_degenerate(evaluate_force(y, y + n, acceleration));
+  evaluate_force(t, y, y + n, acceleration);
   for (std::size_t i = 0; i < particles; ++i) {
     for (std::size_t a = 0; a < 3; ++a) acceleration[3 * i + a] /= model_.mass[i];
   }
 }
 
-void MassSpringSystem::rhs(double, ConstVectorRef y, VectorRef dydt) const {
-  evaluate_rhs(y.data(), dydt.data());
+void MassSpringSystem::rhs(double t, ConstVectorRef y, VectorRef dydt) const {
+  evaluate_rhs(t, y.data(), dydt.data());
 }
 
-void MassSpringSystem::rhs(const Float128&, std::span<const Float128> y, std::span<Float128> dydt) const {
-  evaluate_rhs(y.data(), dydt.data());
+void MassSpringSystem::rhs(const Float128& t, std::span<const Float128> y, std::span<Float128> dydt) const {
+  evaluate_rhs(t, y.data(), dydt.data());
 }
 
-void MassSpringSystem::rhs(double, std::span<const Complex> y, std::span<Complex> dydt) const {
-  evaluate_rhs(y.data(), dydt.data());
+void MassSpringSystem::rhs(double t, std::span<const Complex> y, std::span<Complex> dydt) const {
+  evaluate_rhs(t, y.data(), dydt.data());
 }
 
 SparseMatrix MassSpringSystem::jacobian_pattern() const {
@@ -146,15 +157,16 @@ void MassSpringSystem::jacobian_product(double t, ConstVectorRef y, ConstVectorR
 }
 
 const SwitchingSurfaces* MassSpringSystem::switching_surfaces() const {
-  return elements_->has_switches() ? surfaces_.get() : nullptr;
+  const bool has_any = elements_->has_switches() || (driving_ != nullptr && driving_->has_corners());
+  return has_any ? surfaces_.get() : nullptr;
 }
 
 Index MassSpringSystem::degrees_of_freedom() const {
   return mass_.size();
 }
 
-void MassSpringSystem::force(double, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
-  count_degenerate(evaluate_force(q.data(), v.data(), f.data()));
+void MassSpringSystem::force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
+  evaluate_force(t, q.data(), v.data(), f.data());
 }
 
 SparseMatrix MassSpringSystem::tangent_pattern() const {
@@ -181,13 +193,22 @@ void MassSpringSystem::tangent_product(double, ConstVectorRef q, ConstVectorRef 
 const ForceSplitting* MassSpringSystem::force_splitting() const {
   std::call_once(derived_->splitting_once, [this] {
     if (SpringSplitting::is_possible(*elements_)) {
-      derived_->splitting = std::make_unique<SpringSplitting>(*elements_, block_pattern(), degenerate_);
+      derived_->splitting =
+          std::make_unique<SpringSplitting>(*elements_, block_pattern(), degenerate_, driving_);
     }
   });
   return derived_->splitting.get();
 }
 
-Energies MassSpringSystem::energies(ConstVectorRef q, ConstVectorRef v) const {
+bool MassSpringSystem::is_smooth() const {
+  return !elements_->has_kinks() && (driving_ == nullptr || driving_->is_smooth());
+}
+
+void MassSpringSystem::add_driving_force(double t, VectorRef f) const {
+  if (driving_ != nullptr) driving_->add_force(t, f.data());
+}
+
+Energies MassSpringSystem::energies(double t, ConstVectorRef q, ConstVectorRef v) const {
   Energies energies;
   double& kinetic = energies.at("kinetic");
   for (Index i = 0; i < particle_count(); ++i) {
@@ -195,6 +216,9 @@ Energies MassSpringSystem::energies(ConstVectorRef q, ConstVectorRef v) const {
     kinetic += 0.5 * mass_[3 * i] * dot(velocity, velocity);
   }
   elements_->add_energies(q.data(), energies);
+  if (driving_ != nullptr && driving_->moves_supports()) {
+    energies.at("elastic") += driving_->energy_of_motion(t, q.data());
+  }
   return energies;
 }
 
@@ -212,11 +236,15 @@ Vec3<double> MassSpringSystem::angular_momentum(ConstVectorRef q, ConstVectorRef
   return momentum;
 }
 
-double MassSpringSystem::dissipated_power(ConstVectorRef q, ConstVectorRef v) const {
+double MassSpringSystem::dissipated_power(double t, ConstVectorRef q, ConstVectorRef v) const {
   std::uint64_t degenerate = 0;
   const double power = elements_->dissipated_power(q.data(), v.data(), degenerate);
   count_degenerate(degenerate);
-  return power;
+  return driving_ != nullptr ? power + driving_->dissipation_of_motion(t, v.data()) : power;
+}
+
+double MassSpringSystem::external_power(double t, ConstVectorRef q, ConstVectorRef v) const {
+  return driving_ != nullptr ? driving_->external_power(t, q.data(), v.data()) : 0.0;
 }
 
 }  // namespace fw::mechanics

@@ -14,6 +14,8 @@
 
 namespace fw::mechanics {
 
+class Driving;
+
 /// What a mass-spring system is made of besides its model, for those who have other elements or faster loops
 /// than the shipped ones. Each is called with the system's own copy of the model, which outlives the result.
 struct SystemParts {
@@ -26,8 +28,8 @@ struct SystemParts {
 /// A damped mass-spring system as a first-order system y = (x, v), particle i at 3i, 3i+1, 3i+2 of each half
 /// [Zachmann 2011, S5-S9].
 ///
-/// Forces, energies and matrices are sums over the force elements (mechanics/elements, mechanics/assembly). A
-/// fixed particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero
+/// Forces, energies and matrices are sums over the force elements (mechanics/elements, mechanics/assembly);
+/// what depends on time is a force of its own beside them, which depends on nothing else (`Driving`). A fixed particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero
 /// in the state, so that it holds still in dampers and energies as well. Outputs may not alias inputs.
 /// Evaluations allocate nothing but the pattern, which is made on first use of a matrix and shared by all
 /// threads.
@@ -63,7 +65,8 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   void jacobian(double t, ConstVectorRef y, SparseMatrix& J) const override;
   void jacobian_product(double t, ConstVectorRef y, ConstVectorRef w, VectorRef out) const override;
   const SecondOrderSystem* second_order() const override { return this; }
-  /// Contact with and release by obstacles, ropes that become taut or slack; null without any.
+  /// Contact with and release by obstacles, ropes that become taut or slack, corners of tables over time; null
+  /// without any.
   const SwitchingSurfaces* switching_surfaces() const override;
 
   // SecondOrderSystem
@@ -85,16 +88,32 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   /// Stiff and soft springs, see `SpringSplitting`; null where no spring has a positive stiffness.
   const ForceSplitting* force_splitting() const override;
 
-  /// Energies of the state (q, v).
-  Energies energies(ConstVectorRef q, ConstVectorRef v) const;
+  /// Whether forces or supports depend on time: energy comes from outside.
+  bool is_driven() const { return driving_ != nullptr; }
+  /// What depends on time; null where nothing does.
+  const Driving* driving() const { return driving_.get(); }
+  /// Whether no force is known to have kinks or jumps, in space or time.
+  bool is_smooth() const;
+  /// Adds to f [N] what depends on time alone, for schemes that sum the elements themselves; fixed particles
+  /// get nothing.
+  void add_driving_force(double t, VectorRef f) const;
+
+  /// Energies of the state (q, v) at the time t [s]; it matters where supports move.
+  Energies energies(double t, ConstVectorRef q, ConstVectorRef v) const;
+  /// The same at t = 0, for systems whose supports stand.
+  Energies energies(ConstVectorRef q, ConstVectorRef v) const { return energies(0.0, q, v); }
   /// Σ m v over all particles [kg·m/s].
   Vec3<double> linear_momentum(ConstVectorRef v) const;
   /// Σ x × m v about the origin [kg·m²/s].
   Vec3<double> angular_momentum(ConstVectorRef q, ConstVectorRef v) const;
   /// Power that dampers, drag, anchors' and obstacles' damping take out of the system [W], ≥ 0, so that
-  /// d(kinetic + potential)/dt = −dissipated_power. A contact whose force is clamped to zero loses its stored
-  /// energy: see `obstacle_dissipated_power`.
-  double dissipated_power(ConstVectorRef q, ConstVectorRef v) const;
+  /// d(kinetic + potential)/dt = external_power − dissipated_power. A contact whose force is clamped to zero
+  /// loses its stored energy: see `obstacle_dissipated_power`.
+  double dissipated_power(double t, ConstVectorRef q, ConstVectorRef v) const;
+  /// The same at t = 0, for systems whose supports stand.
+  double dissipated_power(ConstVectorRef q, ConstVectorRef v) const { return dissipated_power(0.0, q, v); }
+  /// Power that forces over time and moving supports put into the system [W]; zero where there are none.
+  double external_power(double t, ConstVectorRef q, ConstVectorRef v) const;
 
   /// How often a spring of length zero (direction undefined, force defined as zero) was met in an evaluation
   /// of forces, tangents or dissipated power since the system was made; one evaluation counts each such
@@ -105,15 +124,17 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   void count_degenerate(std::uint64_t springs) const {
     if (springs > 0) degenerate_.fetch_add(springs, std::memory_order_relaxed);
   }
-  std::uint64_t evaluate_force(const double* q, const double* v, double* f) const {
+  std::uint64_t evaluate_elements(const double* q, const double* v, double* f) const {
     return (kernel_ != nullptr ? *kernel_ : static_cast<const ForceKernel&>(*elements_)).force(q, v, f);
   }
   template <class Scalar>
-  std::uint64_t evaluate_force(const Scalar* q, const Scalar* v, Scalar* f) const {
+  std::uint64_t evaluate_elements(const Scalar* q, const Scalar* v, Scalar* f) const {
     return elements_->force(q, v, f);
   }
-  template <class Scalar>
-  void evaluate_rhs(const Scalar* y, Scalar* dydt) const;
+  template <class Time, class Scalar>
+  void evaluate_force(const Time& t, const Scalar* q, const Scalar* v, Scalar* f) const;
+  template <class Time, class Scalar>
+  void evaluate_rhs(const Time& t, const Scalar* y, Scalar* dydt) const;
   void make_elements();
 
   /// What is made of the elements on first use.
@@ -129,6 +150,7 @@ class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {
   std::vector<char> fixed_;  ///< 3n
   std::unique_ptr<const ElementAssembly> elements_;
   std::unique_ptr<const ForceKernel> kernel_;  ///< null: the elements' own
+  std::shared_ptr<const Driving> driving_;     ///< null: nothing depends on time
   std::unique_ptr<Derived> derived_;
   std::unique_ptr<const SwitchingSurfaces> surfaces_;
   ForceClass force_class_ = ForceClass::position;

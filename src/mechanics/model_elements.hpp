@@ -19,7 +19,7 @@ std::vector<Batch> elements_of(const MassSpringModel& model) {
   validate_arrays(model.springs);
   std::vector<Batch> batches;
   batches.reserve(3 + model.springs.groups.size() + model.obstacles.size() + model.further_elements.size());
-  batches.emplace_back(GravityDragBatch{model.mass, model.gravity, model.drag});
+  batches.emplace_back(GravityDragBatch{model.mass, model.gravity, model.drag, model.mass_drag});
   model.springs.for_each_group([&](const SpringGroup& group, std::size_t begin) {
     with_spring_law(group.law, [&](auto law) {
       batches.emplace_back(SpringBatch<law()>{&model.springs, begin, begin + group.size});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace fw::mechanics {
 
@@ -30,12 +31,15 @@ bool SpringSplitting::is_possible(const ElementAssembly& elements) {
 }
 
 SpringSplitting::SpringSplitting(const ElementAssembly& elements, const BlockPattern& pattern,
-                                 std::atomic<std::uint64_t>& degenerate)
+                                 std::atomic<std::uint64_t>& degenerate,
+                                 std::shared_ptr<const Driving> driving)
     : degenerate_(degenerate) {
-  split(elements, pattern);
+  split(elements, pattern, std::move(driving));
 }
 
-void SpringSplitting::split(const ElementAssembly& elements, const BlockPattern& pattern) {
+void SpringSplitting::split(const ElementAssembly& elements, const BlockPattern& pattern,
+                            std::shared_ptr<const Driving> driving) {
+  driving_ = std::move(driving);
   elements_ = &elements;
   pattern_ = &pattern;
   stiff_.assign(elements.batch_count(), {});
@@ -56,8 +60,9 @@ void SpringSplitting::stiff_force(double, ConstVectorRef q, ConstVectorRef v, Ve
   count_degenerate(elements_->force(stiff_, q.data(), v.data(), f.data()));
 }
 
-void SpringSplitting::soft_force(double, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
+void SpringSplitting::soft_force(double t, ConstVectorRef q, ConstVectorRef v, VectorRef f) const {
   count_degenerate(elements_->force(soft_, q.data(), v.data(), f.data()));
+  if (driving_ != nullptr) driving_->add_force(t, f.data());
 }
 
 void SpringSplitting::stiff_stiffness(double, ConstVectorRef q, ConstVectorRef v, SparseMatrix& K) const {

@@ -22,7 +22,7 @@ void EnergyBudget::add(double kinetic, double at_rest_zero, double outer) {
     outer_start_ = outer;
   }
   change_ = total - start_;
-  gain_ = std::max(gain_, change_);
+  gain_ = std::max(gain_, change_ - work_);
   const double stored = kinetic + std::abs(at_rest_zero);
   scale_ = std::max(scale_, stored + std::abs(outer - outer_start_));
   sum_ = std::max(sum_, stored + std::abs(outer));

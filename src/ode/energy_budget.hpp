@@ -23,6 +23,8 @@ class EnergyBudget {
  public:
   /// The energies of the next state; the first call is the start.
   void add(const Energies& energies);
+  /// Work that came in from outside at most, since the state before [J], ≥ 0; before the state that it led to.
+  void add_work(double most) { work_ += most; }
   /// The same where only these three are known [J].
   void add(double kinetic, double at_rest_zero, double outer);
   /// What rounding does to a state [J]: `virial` = √(Σ_i (f_i q_i)²) over the coordinates, and `jitter` =
@@ -33,19 +35,20 @@ class EnergyBudget {
   double change() const { return change_; }  ///< of the total since the start, of the last state [J]
   double scale() const { return scale_; }    ///< [J]
   double magnitude() const { return sum_ + virial_; }  ///< [J]
-  double gain() const { return gain_; }                ///< largest change of the total [J], ≥ 0
+  /// Largest change of the total beyond what came in from outside [J], ≥ 0.
+  double gain() const { return gain_; }
 
   /// By how much the energy has multiplied without any source: scale/(scale − gain), 1 where nothing was gained.
   double growth_factor() const;
   /// Whether 99 % of the energy and more has come from nowhere, over more than a few states and beyond what
-  /// rounding does to a system at rest. Only for systems without outer sources of energy other than gravity:
+  /// rounding does to a system at rest. What outer sources other than gravity give is told by `add_work`;
   /// dampers can only take.
   bool has_exploded() const;
 
  private:
   std::uint64_t states_ = 0;
   double start_ = 0.0, outer_start_ = 0.0, change_ = 0.0;
-  double scale_ = 0.0, sum_ = 0.0, virial_ = 0.0, jitter_ = 0.0, gain_ = 0.0;
+  double scale_ = 0.0, sum_ = 0.0, virial_ = 0.0, jitter_ = 0.0, gain_ = 0.0, work_ = 0.0;
 };
 
 }  // namespace fw

@@ -42,7 +42,9 @@ Scene build_scene(const CheckedTable& root) {
     build_explicit_system(spec, file, scene);
   }
   add_anchors(spec.anchors, groups, file, scene);
+  add_forces(spec.forces, groups, file, scene);
   add_obstacles(spec.obstacles, file, scene);
+  if (spec.world.rayleigh) add_rayleigh_damping(*spec.world.rayleigh, scene);
   scene.resolved_toml = file.resolved.text();
   return scene;
 }

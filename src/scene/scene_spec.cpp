@@ -10,6 +10,7 @@ using mechanics::SpringLaw;
 using settings::Archive;
 using settings::choice;
 using settings::setting;
+using settings::Setting;
 
 namespace {
 
@@ -50,6 +51,19 @@ std::vector<std::string> point_names(const std::string& kind) {
   return names_of(groups_of(kind, Lattice{}));
 }
 
+template <class Spec>
+Setting particle_setting(const Archive& a, Spec& spec) {
+  return setting("particle", spec.particle)
+      .required()
+      .choices(a.is_description() ? all_point_names() : spec.point_names)
+      .into("particle", spec.particles)
+      .doc("names as for `pinned`; a scene with `[particles]` has the name `all` only");
+}
+
+void declare_table(Archive& a, TimeFunctionSpec& function, const std::string& doc) {
+  a.optional_section({"table", doc}, function.table);
+}
+
 }  // namespace
 
 std::size_t particle_count(const GenerateSpec& generate) {
@@ -61,9 +75,28 @@ std::size_t particle_count(const GenerateSpec& generate) {
   return static_cast<std::size_t>(std::min(points, 9e15));  // more are refused anyway
 }
 
+void declare(Archive& a, RayleighSpec& rayleigh) {
+  a(setting("mass", rayleigh.mass).unit("1/s").nonnegative().doc("α: force −α m v on every particle"));
+  a(setting("stiffness", rayleigh.stiffness)
+        .unit("s")
+        .nonnegative()
+        .doc("β: every spring's damping gains β times its rate dσ/dL, every anchor's β k"));
+}
+
+void declare(Archive& a, TimeTableSpec& table) {
+  a(setting("t", table.t).unit("s").required().not_empty().doc("rising times"));
+  a(setting("value", table.value)
+        .required()
+        .not_empty()
+        .doc("a vector per time; linear between them, constant before the first and after the last"));
+}
+
 void declare(Archive& a, WorldSpec& world) {
   a(setting("gravity", world.gravity).unit("m/s²").doc("acceleration"));
   a(setting("drag", world.drag).unit("kg/s").nonnegative().doc("force −drag·v on every particle"));
+  a.optional_section(
+      {"rayleigh", "Damping α M + β K of the springs' and anchors' stiffness K, as dampers along them."},
+      world.rayleigh);
 }
 
 void declare(Archive& a, ParticlesSpec& particles) {
@@ -213,17 +246,35 @@ void declare(Archive& a, GenerateSpec& g) {
 }
 
 void declare(Archive& a, AnchorSpec& anchor) {
-  a(setting("particle", anchor.particle)
-        .required()
-        .choices(a.is_description() ? all_point_names() : anchor.point_names)
-        .into("particle", anchor.particles)
-        .doc("names as for `pinned`; a scene with `[particles]` has the name `all` only"));
+  a(particle_setting(a, anchor));
   a(setting("stiffness", anchor.stiffness).unit("N/m").required().nonnegative().doc("k"));
   a(setting("damping", anchor.damping).unit("N·s/m").nonnegative().doc("c"));
   a(setting("position", anchor.position)
         .unit("m")
         .default_text("where the particle starts")
         .doc("x₀; only for a single particle"));
+  a(setting("velocity", anchor.displacement.vector)
+        .unit("m/s")
+        .default_text("the support stands")
+        .doc("of a support that moves: x₀ + velocity·t; at most one of this, `table` and `expression`"));
+  a(setting("expression", anchor.displacement.expression)
+        .entries(3)
+        .default_text("the support stands")
+        .doc("displacement of the support from x₀ [m], three expressions of t"));
+  declare_table(a, anchor.displacement, "Displacement of the support from x₀ [m] over time.");
+}
+
+void declare(Archive& a, ForceSpec& force) {
+  a(particle_setting(a, force));
+  a(setting("value", force.force.vector)
+        .unit("N")
+        .default_text("none")
+        .doc("a constant force; exactly one of this, `table` and `expression`"));
+  a(setting("expression", force.force.expression)
+        .entries(3)
+        .default_text("none")
+        .doc("the force [N], three expressions of t"));
+  declare_table(a, force.force, "The force [N] over time.");
 }
 
 void declare(Archive& a, ObstacleSpec& o) {
@@ -267,7 +318,12 @@ void declare(Archive& a, SceneSpec& scene) {
   AnchorSpec anchor;
   anchor.particles = scene.generate ? particle_count(*scene.generate) : springs.particles;
   anchor.point_names = point_names(scene.generate ? scene.generate->kind : "");
-  a.sections({"anchor", "Force −k (x − x₀) − c v on particles."}, scene.anchors, anchor);
+  a.sections({"anchor", "Force −k (x − x₀) − c v on particles; x₀ may move, v is then relative to it."},
+             scene.anchors, anchor);
+  ForceSpec force;
+  force.particles = anchor.particles;
+  force.point_names = anchor.point_names;
+  a.sections({"force", "A force on each of some particles, constant or over time."}, scene.forces, force);
   a.sections({"obstacle",
               "A solid that pushes particles out: force max(k δ − c v·n, 0) n at depth δ with outward "
               "normal n."},

@@ -9,10 +9,18 @@
 
 namespace fw::scene {
 
+/// [world] rayleigh
+struct RayleighSpec {
+  double mass = 0.0;       ///< α [1/s]
+  double stiffness = 0.0;  ///< β [s]
+};
+void declare(settings::Archive& a, RayleighSpec& rayleigh);
+
 /// [world]
 struct WorldSpec {
   Vec3<double> gravity{};  ///< [m/s²]
   double drag = 0.0;       ///< [kg/s]
+  std::optional<RayleighSpec> rayleigh;
 };
 void declare(settings::Archive& a, WorldSpec& world);
 
@@ -69,6 +77,29 @@ void declare(settings::Archive& a, GenerateSpec& generate);
 /// The number of points of the lattice that `generate` describes.
 std::size_t particle_count(const GenerateSpec& generate);
 
+/// `table` of a function of time
+struct TimeTableSpec {
+  std::vector<double> t;            ///< [s]
+  std::vector<Vec3<double>> value;  ///< as many
+};
+void declare(settings::Archive& a, TimeTableSpec& table);
+
+/// A vector as a function of time, in one of these forms.
+struct TimeFunctionSpec {
+  std::optional<Vec3<double>> vector;  ///< a constant value, or a constant velocity
+  std::optional<TimeTableSpec> table;
+  std::optional<std::vector<std::string>> expression;  ///< three, of t
+};
+
+/// [[force]]
+struct ForceSpec {
+  std::size_t particles = 0;             ///< that there are
+  std::vector<std::string> point_names;  ///< that groups of them have
+  PointList particle;
+  TimeFunctionSpec force;  ///< [N]
+};
+void declare(settings::Archive& a, ForceSpec& force);
+
 /// [[anchor]]
 struct AnchorSpec {
   std::size_t particles = 0;             ///< that there are
@@ -76,6 +107,7 @@ struct AnchorSpec {
   PointList particle;
   double stiffness = 0.0, damping = 0.0;
   std::optional<Vec3<double>> position;
+  TimeFunctionSpec displacement;  ///< [m]
 };
 void declare(settings::Archive& a, AnchorSpec& anchor);
 
@@ -97,6 +129,7 @@ struct SceneSpec {
   std::optional<SpringsSpec> springs;
   std::vector<SpringGroupSpec> spring_groups;  ///< in place of `springs`
   std::vector<AnchorSpec> anchors;
+  std::vector<ForceSpec> forces;
   std::vector<ObstacleSpec> obstacles;
 };
 void declare(settings::Archive& a, SceneSpec& scene);

@@ -18,8 +18,12 @@ FrameQuantities quantities_of(const mechanics::MassSpringSystem& system) {
   }
   add("linear_momentum", "kg*m/s", 3);
   add("angular_momentum", "kg*m^2/s", 3);
-  quantities.evaluate = [&system](double, ConstVectorRef q, ConstVectorRef v, std::span<double> values) {
-    const Energies energies = system.energies(q, v);
+  if (system.is_driven()) {
+    add("external_power", "W", 1);
+    add("dissipated_power", "W", 1);
+  }
+  quantities.evaluate = [&system](double t, ConstVectorRef q, ConstVectorRef v, std::span<double> values) {
+    const Energies energies = system.energies(t, q, v);
     auto next = values.begin();
     for (const NamedValue& energy : energies.list()) {
       *next++ = energy.value;
@@ -30,6 +34,9 @@ FrameQuantities quantities_of(const mechanics::MassSpringSystem& system) {
     for (const Vec3<double>& momentum : {system.linear_momentum(v), system.angular_momentum(q, v)}) {
       next = std::ranges::copy(std::array{momentum.x, momentum.y, momentum.z}, next).out;
     }
+    if (!system.is_driven()) return;
+    *next++ = system.external_power(t, q, v);
+    *next++ = system.dissipated_power(t, q, v);
   };
   return quantities;
 }

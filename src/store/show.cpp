@@ -168,9 +168,12 @@ std::string words(const TrajectorySummary& summary, const std::vector<std::strin
                        number_text(summary.total_end())});
   out += energies.text(width);
   const bool is_damped = loses_energy(text_of(summary.attributes, "spec"));
-  std::string change = fmt::format("{} {} J, at most {} J", is_damped ? "energy change" : "energy drift",
-                                   number_text(summary.drift), number_text(summary.largest_drift));
-  if (summary.total_start() != 0.0) {
+  std::string change =
+      fmt::format("{} {} J, at most {} J", is_damped || summary.is_driven ? "energy change" : "energy drift",
+                  number_text(summary.drift), number_text(summary.largest_drift));
+  if (summary.is_driven) {
+    change += ", forces or supports over time do work";
+  } else if (summary.total_start() != 0.0) {
     const double scale = std::abs(summary.total_start());
     change += fmt::format(" (relative {}, at most {})", number_text(summary.drift / scale),
                           number_text(summary.largest_drift / scale));

@@ -69,6 +69,7 @@ TrajectorySummary read_trajectory_summary(const std::filesystem::path& path) {
     if (springs.size() != 2 || springs[1] != 2) throw LibraryError("the springs are not of shape (s, 2)");
     summary.springs = springs[0];
     read_energies(trajectory, summary);
+    summary.is_driven = has_link(trajectory, "external_power");
     const Handle counters = open_group(file.id(), "counters");
     for (const std::string& name : link_names(counters)) {
       const record::Column column = read_dataset(counters, name);

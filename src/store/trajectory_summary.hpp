@@ -16,11 +16,12 @@ struct TrajectorySummary {
   std::uint64_t frames = 0;
   std::uint64_t particles = 0;
   std::uint64_t springs = 0;
-  double time_start = 0.0, time_end = 0.0;               ///< [s]
-  double kinetic_start = 0.0, kinetic_end = 0.0;         ///< [J]
-  double potential_start = 0.0, potential_end = 0.0;     ///< [J]
-  double drift = 0.0;                                    ///< E(end) − E(start) [J]
-  double largest_drift = 0.0;                            ///< max over the frames of |E − E(start)| [J]
+  double time_start = 0.0, time_end = 0.0;            ///< [s]
+  double kinetic_start = 0.0, kinetic_end = 0.0;      ///< [J]
+  double potential_start = 0.0, potential_end = 0.0;  ///< [J]
+  double drift = 0.0;                                 ///< E(end) − E(start) [J]
+  double largest_drift = 0.0;                         ///< max over the frames of |E − E(start)| [J]
+  bool is_driven = false;  ///< forces or supports over time do work: the energy need not stay
   std::vector<std::pair<std::string, double>> counters;  ///< as in /counters
 
   double total_start() const { return kinetic_start + potential_start; }

@@ -26,8 +26,9 @@ namespace {
 
 std::vector<Invariant> energy_of(const std::shared_ptr<const mechanics::MassSpringSystem>& system) {
   const Index n = system->degrees_of_freedom();
-  return {{"energy", "J",
-           [system, n](double, ConstVectorRef y) { return system->energies(y.head(n), y.tail(n)).total(); }}};
+  return {{"energy", "J", [system, n](double t, ConstVectorRef y) {
+             return system->energies(t, y.head(n), y.tail(n)).total();
+           }}};
 }
 
 /// The scene as a problem on [0, t_end].
@@ -39,11 +40,12 @@ Problem problem_from_scene(scene::Scene scene, const std::string& name, double t
   problem.ivp.y0 = initial_state(scene);
   problem.ivp.t1 = t_end;
   auto system = std::make_shared<const mechanics::MassSpringSystem>(std::move(scene.model));
-  problem.is_smooth = !system->elements().has_kinks();
+  problem.is_smooth = system->is_smooth();
   if (scene.starts_at_equilibrium) {
     problem.ivp.y0.head(system->degrees_of_freedom()) = catalog.equilibrium(*system, scene.position);
   }
-  if (system->force_class() == ForceClass::position) problem.invariants = energy_of(system);
+  if (system->force_class() == ForceClass::position && !system->is_driven())
+    problem.invariants = energy_of(system);
   problem.ivp.system = std::move(system);
   return problem;
 }

@@ -36,6 +36,28 @@ TEST(Evaluation, AllocatesNothing) {
   }
 }
 
+TEST(Evaluation, AllocatesNothingForForcesOverTime) {
+  RandomModels random(20261128);
+  MassSpringModel model = random.everything(SpringLaw::hooke);
+  const formula::VectorFunction wave(formula::ExpressionFunction{
+      formula::Expression("sin(t)^2"), formula::Expression("exp(-t)"), formula::Expression("max(t, 1)")});
+  const formula::VectorFunction table(formula::TableFunction{{0, 1}, {{0, 0, 0}, {1, 2, 3}}});
+  model.forces = {{{0, 1}, wave}, {{2}, table}};
+  model.support_motions = {{{0}, wave}};
+  const MassSpringSystem system(model);
+  const State state = random.state(system.model());
+  const Vector y = state.stacked();
+  Vector dydt(y.size()), f(y.size() / 2);
+  EXPECT_EQ(allocations_of([&] {
+              system.force(0.5, state.q, state.v, f);
+              system.rhs(0.5, y, dydt);
+              system.energies(0.5, state.q, state.v);
+              system.dissipated_power(0.5, state.q, state.v);
+              system.external_power(0.5, state.q, state.v);
+            }),
+            0u);
+}
+
 TEST(Construction, AllocatesAHandfulOfArraysAndNothingPerSpring) {
   RandomModels random(20260702);
   const auto cost = [&](int springs) {

@@ -7,6 +7,15 @@
 
 namespace fw::scene {
 
+/// Expects that two functions of time have the same values and corners.
+inline void expect_same_function(const formula::VectorFunction& a, const formula::VectorFunction& b) {
+  for (const double t : {0.0, 0.3, 1.7, 40.0}) {
+    EXPECT_EQ(a(t).value, b(t).value);
+    EXPECT_EQ(a(t).rate, b(t).rate);
+  }
+  EXPECT_EQ(a.corners(), b.corners());
+}
+
 /// Expects that two scenes are equal bit for bit in everything that a solver sees.
 inline void expect_same_scene(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.title, b.title);
@@ -16,6 +25,17 @@ inline void expect_same_scene(const Scene& a, const Scene& b) {
   EXPECT_EQ(a.model.fixed, b.model.fixed);
   EXPECT_EQ(a.model.gravity, b.model.gravity);
   EXPECT_EQ(a.model.drag, b.model.drag);
+  EXPECT_EQ(a.model.mass_drag, b.model.mass_drag);
+  ASSERT_EQ(a.model.forces.size(), b.model.forces.size());
+  for (std::size_t k = 0; k < a.model.forces.size(); ++k) {
+    EXPECT_EQ(a.model.forces[k].particles, b.model.forces[k].particles);
+    expect_same_function(a.model.forces[k].force, b.model.forces[k].force);
+  }
+  ASSERT_EQ(a.model.support_motions.size(), b.model.support_motions.size());
+  for (std::size_t k = 0; k < a.model.support_motions.size(); ++k) {
+    EXPECT_EQ(a.model.support_motions[k].anchors, b.model.support_motions[k].anchors);
+    expect_same_function(a.model.support_motions[k].displacement, b.model.support_motions[k].displacement);
+  }
   EXPECT_EQ(a.model.springs.first, b.model.springs.first);
   EXPECT_EQ(a.model.springs.second, b.model.springs.second);
   EXPECT_EQ(a.model.springs.stiffness, b.model.springs.stiffness);

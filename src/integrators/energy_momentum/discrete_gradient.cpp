@@ -35,6 +35,7 @@ class DiscreteGradientStepper final : public ImplicitVelocityStepper {
   void impulse(ConstVectorRef v, VectorRef out) override {
     move(v);
     system_.elements().discrete_force(moved(), force_.data());
+    system_.add_driving_force(time() + 0.5 * length(), force_);
     ++work_.rhs_evaluations;
     out = length() * force_;
   }

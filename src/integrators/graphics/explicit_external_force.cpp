@@ -38,9 +38,10 @@ void ExplicitExternalForce::choose() {
   }
 }
 
-void ExplicitExternalForce::evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force) {
+void ExplicitExternalForce::evaluate(double t, ConstVectorRef q, ConstVectorRef v, VectorRef force) {
   if (revision_ != system_.element_revision()) choose();
   system_.elements().force(external_, q.data(), v.data(), force.data());
+  system_.add_driving_force(t, force);
 }
 
 void ExplicitExternalForce::elastic(ConstVectorRef q, VectorRef force) {

@@ -20,8 +20,9 @@ class ExplicitExternalForce {
   /// and anchors are elastic.
   ExplicitExternalForce(const mechanics::MassSpringSystem& system, Dampers dampers, std::string_view method);
 
-  /// Gravity, drag, obstacles and, unless left out, dampers at (q, v) [N]; zero on fixed particles.
-  void evaluate(ConstVectorRef q, ConstVectorRef v, VectorRef force);
+  /// Gravity, drag, obstacles and, unless left out, dampers at (q, v), and what depends on time alone at the
+  /// end `t` of the step [N]; zero on fixed particles.
+  void evaluate(double t, ConstVectorRef q, ConstVectorRef v, VectorRef force);
 
   /// Springs and anchors at rest at q [N]; zero on fixed particles.
   void elastic(ConstVectorRef q, VectorRef force);

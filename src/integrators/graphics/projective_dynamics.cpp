@@ -36,14 +36,14 @@ class ProjectiveDynamicsStepper final : public Stepper {
     for (Vector& correction : correction_) correction.resize(unknowns_);
   }
 
-  Status step(double, double h, VectorRef y) override {
+  Status step(double t, double h, VectorRef y) override {
     if (h != factorised_step_ || system_.element_revision() != factorised_revision_) {
       if (Status status = factorise(h); !status.ok()) return status;
     }
     const Index n = force_.size();
     auto q = y.head(n);
     auto v = y.tail(n);
-    external_.evaluate(q, v, force_);
+    external_.evaluate(t + h, q, v, force_);
     ++work_.rhs_evaluations;
     start_ = q;
     inertial_ = q + h * v + (h * h) * force_.cwiseQuotient(system_.mass());

@@ -10,6 +10,7 @@
 #include "integrators/loop/mass_spring_access.hpp"
 #include "integrators/loop/stepper.hpp"
 #include "mechanics/elements/spring_force.hpp"
+#include "ode/not_applicable.hpp"
 
 namespace fw::integrators {
 
@@ -26,14 +27,22 @@ class XpbdStepper final : public Stepper {
         start_(system.degrees_of_freedom()),
         displacement_(system.degrees_of_freedom()),
         force_(system.degrees_of_freedom()) {
+    if (!model_.support_motions.empty()) {
+      throw NotApplicable(
+          "method \"xpbd\": found anchors whose supports move, expected supports that stand: its constraints "
+          "are "
+          "those of the positions at the start");
+    }
     for (std::size_t i = 0; i < inverse_mass_.size(); ++i) {
       inverse_mass_[i] = system.fixed()[3 * i] ? 0.0 : 1.0 / model_.mass[i];
     }
   }
 
-  Status step(double, double h, VectorRef y) override {
+  Status step(double t, double h, VectorRef y) override {
     const double length = h / options_.substeps;
-    for (int substep = 0; substep < options_.substeps; ++substep) make_substep(length, y);
+    for (int substep = 0; substep < options_.substeps; ++substep) {
+      make_substep(t + (substep + 1) * length, length, y);
+    }
     return {};
   }
 
@@ -42,11 +51,12 @@ class XpbdStepper final : public Stepper {
   void serialise(StateArchive&) override {}
 
  private:
-  void make_substep(double tau, VectorRef y) {
+  /// A substep of the length τ that ends at the time `end`.
+  void make_substep(double end, double tau, VectorRef y) {
     const Index n = force_.size();
     auto q = y.head(n);
     auto v = y.tail(n);
-    external_.evaluate(q, v, force_);
+    external_.evaluate(end, q, v, force_);
     ++work_.rhs_evaluations;
     // The displacement of the substep is kept apart from the position: velocities are then free of q's
     // rounding over τ.

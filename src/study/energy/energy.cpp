@@ -227,7 +227,7 @@ class EnergyCase {
       add("angular_momentum_change", "kg*m^2/s",
           [](const EnergyObserver& seen) { return seen.angular_change()->largest(); });
     }
-    if (problem_.watched.is_damped) {
+    if (problem_.watched.is_damped || problem_.watched.is_driven) {
       // A run that stops early has fewer of them than bins.
       const auto padded = [](std::vector<double> values, const EnergyObserver& seen) {
         values.resize(seen.change().times().size(), no_value);

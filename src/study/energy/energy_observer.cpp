@@ -15,9 +15,12 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) : gauge(entry.problem)
     const Index n = springs->degrees_of_freedom();
     quantity = "energy";
     unit = std::string(1, 'J');  // GCC 12 warns wrongly of the assignment of one letter
-    value = [s = springs, n](double, ConstVectorRef y) { return s->energies(y.head(n), y.tail(n)).total(); };
+    value = [s = springs, n](double t, ConstVectorRef y) {
+      return s->energies(t, y.head(n), y.tail(n)).total();
+    };
     is_damped = springs->force_class() == ForceClass::velocity;
-    is_free = springs->model().fixed.empty() && springs->elements().is_internal();
+    is_driven = springs->is_driven();
+    is_free = springs->model().fixed.empty() && springs->elements().is_internal() && !is_driven;
     return;
   }
   if (problem.invariants.empty()) {
@@ -41,6 +44,7 @@ EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFu
       step_(step),
       steps_(steps),
       bins_(std::min(bins, steps + 1)),
+      outer_work_(watched.springs),
       change_(steps + 1, bins) {
   const auto series = [&] { return analysis::BinnedSeries(steps + 1, bins); };
   if (watched.is_isolated_spring) logarithm_ = series();
@@ -63,6 +67,7 @@ void EnergyObserver::watch_size(const StepView& view, double value) {
     budget_.add(0.0, value, 0.0);
     return;
   }
+  outer_work_.add(view.time, view.state, budget_);
   watched_.gauge.add(view.time, view.state, budget_);
   if (view.index != 0 && !ends_bin(view)) return;
   watched_.gauge.add_rounding(view.time, view.state, step_, budget_);
@@ -87,7 +92,8 @@ bool EnergyObserver::observe(const StepView& view) {
   if (watched_.springs != nullptr) {
     const Index n = watched_.springs->degrees_of_freedom();
     if (watched_.is_free) watch_momenta(view, view.state.head(n), view.state.tail(n));
-    if (watched_.is_damped) watch_work(view, view.state.head(n), view.state.tail(n), change);
+    if (watched_.is_damped || watched_.is_driven)
+      watch_work(view, view.state.head(n), view.state.tail(n), change);
   }
   return true;
 }
@@ -112,7 +118,8 @@ void EnergyObserver::watch_momenta(const StepView& view, ConstVectorRef q, Const
 }
 
 void EnergyObserver::watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change) {
-  power_.add(watched_.springs->dissipated_power(q, v));
+  const mechanics::MassSpringSystem& springs = *watched_.springs;
+  power_.add(springs.dissipated_power(view.time, q, v) - springs.external_power(view.time, q, v));
   // The last value of each bin: where the next one belongs to another bin.
   if (ends_bin(view)) {
     work_.push_back(power_.integral(step_));

@@ -22,6 +22,7 @@ struct WatchedProblem {
   EnergyGauge gauge;                                     ///< the parts of `value`, where it is an energy
   const mechanics::MassSpringSystem* springs = nullptr;  ///< null: no mass-spring system
   bool is_damped = false;           ///< energy leaves through dampers, and the power is known
+  bool is_driven = false;           ///< forces or supports over time do work, and their power is known
   bool is_free = false;             ///< no outer force: linear and angular momentum are conserved
   bool is_isolated_spring = false;  ///< one frequency ω, see `frequency`
   double frequency = 0.0;           ///< ω of a harmonic oscillator or rotation [1/s]
@@ -52,8 +53,10 @@ class EnergyObserver final : public Observer {
   const std::optional<analysis::BinnedSeries>& angular_change() const { return angular_change_; }
   double momentum_scale() const { return momentum_scale_; }  ///< the largest Σ m |v| [kg·m/s]
   double angular_scale() const { return angular_scale_; }    ///< the largest Σ |x| m |v| [kg·m²/s]
-  /// E_n − E_0 + ∫ P dt along the numerical trajectory, at the end of each bin; empty without dampers.
+  /// E_n − E_0 + ∫ (P_dissipated − P_external) dt along the numerical trajectory, at the end of each bin; empty
+  /// where there is neither.
   const std::vector<double>& balance() const { return balance_; }
+  /// The integral in it [J].
   const std::vector<double>& work() const { return work_; }
 
  private:
@@ -67,6 +70,7 @@ class EnergyObserver final : public Observer {
   double step_;
   std::uint64_t steps_, bins_;
   EnergyBudget budget_;
+  OuterWork outer_work_;
   double first_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
   analysis::BinnedSeries change_;

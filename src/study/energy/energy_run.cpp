@@ -256,8 +256,10 @@ EnergyRun follow_energy(const WatchedProblem& watched, const Ivp& given, const I
   Ivp ivp = given;
   ivp.t1 = ivp.t0 + step * static_cast<double>(steps);
   run.seen = std::make_unique<EnergyObserver>(
-      watched, analysis::modified_energy(theory.modified_energy, ivp, step, watched.value), step, steps,
-      bins);
+      watched,
+      watched.is_driven ? analysis::EnergyFunction()
+                        : analysis::modified_energy(theory.modified_energy, ivp, step, watched.value),
+      step, steps, bins);
   const Solution solution = context.solve(integrator, ivp, FixedStep{.step = step}, *run.seen);
   run.status = solution.status;
   run.end_time = solution.time;
@@ -323,8 +325,17 @@ EnergyVerdict judge_energy(const WatchedProblem& watched, const MethodInfo& info
                            const std::vector<EnergyRun>& runs, const EnergyExponents& exponents) {
   Findings findings;
   const EnergyRun& first = runs.front();
-  const bool has_kinks = watched.springs != nullptr && watched.springs->elements().has_kinks();
-  if (watched.is_damped) {
+  const bool has_kinks = watched.springs != nullptr && !watched.springs->is_smooth();
+  if (watched.is_driven) {
+    judge_exponent("energy minus work from outside and of dampers", exponents.balance,
+                   watched.is_damped ? info.order_with_velocity_forces : info.order, has_kinks, runs.size(),
+                   findings);
+    if (!first.seen->work().empty()) {
+      findings.note(
+          fmt::format("the energy changes by {:.3g} {} through work; {:.2g} are left open at h = {:.4g}",
+                      -first.seen->work().back(), watched.unit, first.seen->balance().back(), first.step));
+    }
+  } else if (watched.is_damped) {
     judge_exponent("energy loss minus work of the dampers", exponents.balance,
                    info.order_with_velocity_forces, has_kinks, runs.size(), findings);
     if (!first.seen->work().empty()) {

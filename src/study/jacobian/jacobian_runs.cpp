@@ -20,7 +20,7 @@ class RiseOfEnergy final : public Observer {
 
   bool observe(const StepView& view) override {
     const Index n = system_.degrees_of_freedom();
-    const Energies energies = system_.energies(view.state.head(n), view.state.tail(n));
+    const Energies energies = system_.energies(view.time, view.state.head(n), view.state.tail(n));
     if (view.index == 0) {
       start_ = energies.total();
       // Gravity's energy has no zero of its own.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fw::study {
@@ -19,7 +21,7 @@ void EnergyGauge::add(double t, ConstVectorRef y, EnergyBudget& budget) const {
   const Index n = system_->degrees_of_freedom();
   const auto q = y.head(n), v = y.tail(n);
   if (springs_ != nullptr) {
-    budget.add(springs_->energies(q, v));
+    budget.add(springs_->energies(t, q, v));
   } else {
     const double kinetic = 0.5 * system_->mass().dot(v.cwiseAbs2());
     budget.add(kinetic, 0.0, problem_->invariants.front().value(t, y) - kinetic);
@@ -35,8 +37,25 @@ void EnergyGauge::add_rounding(double t, ConstVectorRef y, double h, EnergyBudge
   budget.add_rounding(force.cwiseProduct(q).norm(), digit * digit * system_->mass().dot(q.cwiseAbs2()));
 }
 
+void OuterWork::add(double t, ConstVectorRef y, EnergyBudget& budget) {
+  if (!is_possible()) return;
+  const Index n = springs_->degrees_of_freedom();
+  const auto power = [&](double time, ConstVectorRef state) {
+    return std::abs(springs_->external_power(time, state.head(n), state.tail(n)));
+  };
+  const double now = power(t, y);
+  if (last_.size() > 0) {
+    middle_ = 0.5 * (last_ + y);
+    budget.add_work((t - last_time_) * std::max({last_power_, power(0.5 * (last_time_ + t), middle_), now}));
+  }
+  last_ = y;
+  last_time_ = t;
+  last_power_ = now;
+}
+
 bool EnergyWatch::observe(const StepView& view) {
   constexpr std::uint64_t every_one = 64, stride = 16;
+  work_.add(view.time, view.state, budget_);
   if (gauge_.is_known() && (view.index < every_one || view.index % stride == 0 || view.last)) {
     gauge_.add(view.time, view.state, budget_);
     if (view.index == 0) start_time_ = view.time;
@@ -50,7 +69,9 @@ bool EnergyWatch::observe(const StepView& view) {
 }
 
 void EnergyWatch::add_earlier(double time, ConstVectorRef state) {
-  if (gauge_.is_known()) gauge_.add(time, state, budget_);
+  if (!gauge_.is_known()) return;
+  work_.add(time, state, budget_);
+  gauge_.add(time, state, budget_);
 }
 
 Status EnergyWatch::judged(const Status& status) const {

@@ -30,12 +30,30 @@ class EnergyGauge {
   const Problem* problem_ = nullptr;
 };
 
+/// How much work forces over time and moving supports have done at most: Σ h max |P|, over the ends and the middle
+/// of each step. Nothing where nothing depends on time.
+class OuterWork {
+ public:
+  /// `springs` may be null.
+  explicit OuterWork(const mechanics::MassSpringSystem* springs)
+      : springs_(springs != nullptr && springs->is_driven() ? springs : nullptr) {}
+
+  bool is_possible() const { return springs_ != nullptr; }
+  /// The next state of a run, each one in turn.
+  void add(double t, ConstVectorRef y, EnergyBudget& budget);
+
+ private:
+  const mechanics::MassSpringSystem* springs_;
+  Vector last_, middle_;
+  double last_time_ = 0.0, last_power_ = 0.0;
+};
+
 /// Keeps the account of a run's energies before it passes the steps on: a run whose energy multiplies from nowhere
 /// is no success, however finite its numbers are. Looks at the first 64 steps, every sixteenth and the last: at all of
 /// them it would cost as much as an evaluation of the forces per step.
 class EnergyWatch final : public Observer {
  public:
-  EnergyWatch(EnergyGauge gauge, Observer& next) : gauge_(gauge), next_(next) {}
+  EnergyWatch(EnergyGauge gauge, Observer& next) : gauge_(gauge), work_(gauge.springs()), next_(next) {}
 
   bool observe(const StepView& view) override;
   /// A state before the first step that is observed: of a run that goes on from a checkpoint.
@@ -45,6 +63,7 @@ class EnergyWatch final : public Observer {
 
  private:
   EnergyGauge gauge_;
+  OuterWork work_;
   Observer& next_;
   EnergyBudget budget_;
   double start_time_ = 0.0;
