@@ -124,7 +124,7 @@ std::string to_text(const SceneFacts& facts) {
          fmt::format("{} forces, {} sets of supports", model.forces.size(), model.support_motions.size()));
   }
   const Index n = facts.system->degrees_of_freedom();
-  const Energies energies = facts.system->energies(facts.state.head(n), facts.state.tail(n));
+  const Energies energies = facts.system->energies(0.0, facts.state.head(n), facts.state.tail(n));
   line("energy at the start",
        fmt::format("{:.6g} J kinetic, {:.6g} J potential", energies.kinetic(), energies.potential()));
   if (!facts.stiffest.empty()) text += "\nStiffest springs (frequency between their two masses alone)\n";

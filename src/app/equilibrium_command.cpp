@@ -130,8 +130,8 @@ int find(const EquilibriumArguments& arguments, const std::string& command_line)
     report.farthest = i / 3;
   }
   const Vector rest = Vector::Zero(scene.position.size());
-  report.potential_before = system.energies(scene.position, rest).potential();
-  report.potential_after = system.energies(report.found.position, rest).potential();
+  report.potential_before = system.energies(0.0, scene.position, rest).potential();
+  report.potential_after = system.energies(0.0, report.found.position, rest).potential();
   if (!arguments.output.empty()) write(arguments, command_line, scene, system, report);
   if (arguments.as_json) {
     print_json(report, arguments, report.found.position);

@@ -131,7 +131,7 @@ Status IdaMemory::failure(int flag, double t) const {
             fmt::format(
                 "IDA at t = {:.6g}: what is left to the end at t = {:.6g}, {:.3g} s, is too short for it to "
                 "take a step; a later end mends it, or another method",
-                t, end_, end_ - t)};
+                t, stop_time_, stop_time_ - t)};
   }
   long last_linear_flag = 0;
   IDAGetLastLinFlag(get(), &last_linear_flag);
