@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <memory>
@@ -15,14 +16,23 @@
 #include "core/error.hpp"
 #include "scene/generators.hpp"
 #include "schemes/property_list.hpp"
+#include "system/terminal.hpp"
 #include "text/closest_name.hpp"
 #include "text/json_writer.hpp"
+#include "text/wrapped_lines.hpp"
 
 namespace fw::app {
 
 namespace {
 
 using text::JsonWriter;
+
+/// A line "  label   value", wrapped beside its label to the width of the terminal.
+std::string labelled_line(const std::string& label, const std::string& value) {
+  constexpr std::size_t indent = 27;
+  return text::wrapped_paragraph(fmt::format("  {:<24} ", label), value, terminal_width(STDOUT_FILENO),
+                                 indent);
+}
 
 /// A method with the options of a call.
 struct DescribedMethod {
@@ -42,9 +52,7 @@ std::string describe_method(const DescribedMethod& method) {
   const MethodInfo& info = method.info;
   const std::vector<settings::SettingDescription>& options = method.entry.options;
   std::string text = fmt::format("{}\n{}\n\n", method.call, info.title);
-  const auto line = [&](const char* label, const std::string& value) {
-    text += fmt::format("  {:<24} {}\n", label, value);
-  };
+  const auto line = [&](const char* label, const std::string& value) { text += labelled_line(label, value); };
   line("family", info.family);
   line("one step", info.formula);
   line("order", info.order == 0 ? "variable" : std::to_string(info.order));
@@ -69,9 +77,9 @@ std::string describe_method(const DescribedMethod& method) {
                         catalog::default_text(options.front()));
     for (const settings::SettingDescription& option : options) {
       const std::string standard = catalog::default_text(option);
-      text += fmt::format("  {:<24} {}{}\n", option.info.name, settings::expectation(option.info),
-                          standard.empty() ? "" : " (default " + standard + ")");
-      text += fmt::format("  {:<24} {}\n", "", option.info.doc);
+      text += labelled_line(option.info.name, settings::expectation(option.info) +
+                                                  (standard.empty() ? "" : " (default " + standard + ")"));
+      text += labelled_line("", option.info.doc);
     }
   }
   const std::vector<schemes::NamedProperty> derived =
@@ -87,9 +95,7 @@ std::string describe_method(const DescribedMethod& method) {
 std::string describe_problem(const ProblemEntry& entry) {
   const Problem problem = entry.make({});
   std::string text = fmt::format("{}\n{}\n\n", problem.name, problem.title);
-  const auto line = [&](const char* label, const std::string& value) {
-    text += fmt::format("  {:<24} {}\n", label, value);
-  };
+  const auto line = [&](const char* label, const std::string& value) { text += labelled_line(label, value); };
   line("equations", problem.description);
   line("unknowns", std::to_string(problem.ivp.system->size()));
   line("interval", fmt::format("[{}, {}] s", problem.ivp.t0, problem.ivp.t1));
@@ -187,7 +193,10 @@ std::string problem_json(const ProblemEntry& entry) {
 /// An entry of which no more is known than its title and description.
 std::string entry_text(const char* type, const std::string& name, const std::string& title,
                        const std::string& description, bool as_json) {
-  if (!as_json) return fmt::format("{}\n{}\n\n  {}\n", name, title, description);
+  if (!as_json) {
+    return fmt::format("{}\n{}\n\n{}", name, title,
+                       text::wrapped_paragraph("  ", description, terminal_width(STDOUT_FILENO), 2));
+  }
   JsonWriter json;
   json.begin_object().key("type").value(type).key("name").value(name).key("title").value(title);
   json.key("description").value(description).end_object();
@@ -221,9 +230,10 @@ std::string describe(const std::string& name, bool as_json) {
     }
     names.push_back(generator.name);
   }
+  const std::string ours = catalog::our_name_of(called);
   throw InputError(fmt::format(
-      "unknown name \"{}\"{}; \"federwerk list methods\" and \"federwerk list problems\" show all", name,
-      did_you_mean(name, names)));
+      "unknown name \"{}\"{}; \"federwerk list methods --all\" and \"federwerk list problems\" show all",
+      name, ours.empty() ? did_you_mean(name, names) : fmt::format("; it is called \"{}\" here", ours)));
 }
 
 /// The entries of several names, a blank line between them; as JSON an array.

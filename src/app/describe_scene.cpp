@@ -34,11 +34,11 @@ struct SpringRate {
 struct SceneFacts {
   std::string file;
   scene::Scene scene;
-  std::shared_ptr<const mechanics::MassSpringSystem> system;
-  Vector state;
-  std::vector<SpringRate> stiffest;
-  analysis::LinearModes modes;
-  std::vector<catalog::StableStep> steps;
+  std::shared_ptr<const mechanics::MassSpringSystem> system{};
+  Vector state{};
+  std::vector<SpringRate> stiffest{};
+  analysis::LinearModes modes{};
+  std::vector<catalog::StableStep> steps{};
 };
 
 std::vector<SpringRate> stiffest_springs(const mechanics::MassSpringSystem& system) {

@@ -29,7 +29,7 @@ struct EquilibriumArguments {
 /// What is said of a search.
 struct Report {
   catalog::Equilibrium found;
-  catalog::LowestMode lowest;
+  catalog::LowestMode lowest{};
   double largest_displacement = 0.0;  ///< [m]
   Index farthest = 0;                 ///< the particle that is displaced so far
   double potential_before = 0.0, potential_after = 0.0;

@@ -206,8 +206,32 @@ std::vector<MethodEntry> make_list() {
   return list;
 }
 
-/// What other programs and books call our methods (MATLAB, SciPy, Hairer's codes, graphics); of foreign ones the name
-/// without its library.
+}  // namespace
+
+const std::vector<MethodEntry>& methods() {
+  static const std::vector<MethodEntry> list = make_list();
+  return list;
+}
+
+const std::vector<std::string>& first_methods() {
+  static const std::vector<std::string> names = {"explicit_euler",
+                                                 "symplectic_euler",
+                                                 "verlet",
+                                                 "velocity_verlet",
+                                                 "midpoint",
+                                                 "heun",
+                                                 "rk4",
+                                                 "implicit_euler_linearised",
+                                                 "implicit_euler",
+                                                 "trapezoidal",
+                                                 "implicit_midpoint",
+                                                 "bdf2",
+                                                 "dormand_prince_54",
+                                                 "radau_iia3",
+                                                 "sundials:cvode_bdf"};
+  return names;
+}
+
 std::string our_name_of(const std::string& name) {
   static const std::map<std::string, std::string> names = {
       {"euler", "explicit_euler"},
@@ -248,32 +272,6 @@ std::string our_name_of(const std::string& name) {
   return "";
 }
 
-}  // namespace
-
-const std::vector<MethodEntry>& methods() {
-  static const std::vector<MethodEntry> list = make_list();
-  return list;
-}
-
-const std::vector<std::string>& first_methods() {
-  static const std::vector<std::string> names = {"explicit_euler",
-                                                 "symplectic_euler",
-                                                 "verlet",
-                                                 "velocity_verlet",
-                                                 "midpoint",
-                                                 "heun",
-                                                 "rk4",
-                                                 "implicit_euler_linearised",
-                                                 "implicit_euler",
-                                                 "trapezoidal",
-                                                 "implicit_midpoint",
-                                                 "bdf2",
-                                                 "dormand_prince_54",
-                                                 "radau_iia3",
-                                                 "sundials:cvode_bdf"};
-  return names;
-}
-
 const MethodEntry& find_method(const std::string& name) {
   std::vector<std::string> names;
   for (const MethodEntry& entry : methods()) {
@@ -282,7 +280,7 @@ const MethodEntry& find_method(const std::string& name) {
   }
   const std::string ours = our_name_of(name);
   throw InputError(fmt::format(
-      "unknown method \"{}\"{}; \"federwerk list methods\" shows all", name,
+      "unknown method \"{}\"{}; \"federwerk list methods --all\" shows all", name,
       ours.empty() ? did_you_mean(name, names) : fmt::format("; it is called \"{}\" here", ours)));
 }
 

@@ -89,6 +89,10 @@ const std::vector<MethodEntry>& methods();
 /// The methods to start with, as calls: those of the lecture and one good choice of each kind.
 const std::vector<std::string>& first_methods();
 
+/// What a method is called here that other programs and books (MATLAB, SciPy, Hairer's codes, graphics) call `name`;
+/// of foreign ones it is the name without its library. Empty: not known.
+std::string our_name_of(const std::string& name);
+
 /// The entry of that name; throws InputError with the nearest name.
 const MethodEntry& find_method(const std::string& name);
 

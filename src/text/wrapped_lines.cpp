@@ -21,7 +21,7 @@ std::size_t bytes_of(std::string_view text, std::size_t count) {
 /// How many bytes of a word that is longer than `width` go on a line.
 std::size_t break_of(std::string_view word, std::size_t width) {
   const std::size_t most = bytes_of(word, width);
-  const std::size_t separator = word.substr(0, most).find_last_of("_-/,;:=");
+  const std::size_t separator = word.substr(0, most).find_last_of("_-/,;:=[");
   // A break near the start of the word would waste the line.
   return separator != std::string_view::npos && 2 * (separator + 1) >= most ? separator + 1 : most;
 }

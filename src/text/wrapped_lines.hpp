@@ -8,7 +8,7 @@
 namespace fw::text {
 
 /// `text` as lines of at most `width` ≥ 1 code points, broken at blanks; a word that is longer is broken after a
-/// separator (one of _ - / , ; : =) where it has one, else anywhere. Blanks at breaks are dropped. Never empty.
+/// separator (one of _ - / , ; : = [) where it has one, else anywhere. Blanks at breaks are dropped. Never empty.
 std::vector<std::string> wrapped_lines(std::string_view text, std::size_t width);
 
 /// `first` followed by `text`, wrapped to `width`; lines after the first are indented by `indent` blanks. Each

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <cmath>
+#include <stdexcept>
 
 #include "analysis/gauss_collocation.hpp"
 #include "core/error.hpp"
@@ -301,6 +303,25 @@ TEST(Reference, UsesTheClosedFormWhereThereIsOne) {
   EXPECT_LT(solution.states[0].largest_error(), 1e-29);
   EXPECT_GT(solution.states[0].largest_error(), 1e-32);
   EXPECT_EQ(reference(henon_heiles(), 1.0).source, ReferenceSource::certified);
+}
+
+TEST(CertifiedReference, TellsItsProgressWhichChangesNothingAndMayEndIt) {
+  const Ivp ivp = henon_heiles().ivp;
+  std::vector<double> told;
+  ReferenceOptions options;
+  options.progress = [&](double fraction) { told.push_back(fraction); };
+  const ReferenceSolution with = certified_reference(ivp, 5.0, options),
+                          without = certified_reference(ivp, 5.0);
+  EXPECT_EQ(largest_difference(with.states.at(0).value, without.states.at(0).value), 0);
+  ASSERT_EQ(told.size(), with.work.accepted_steps);
+  EXPECT_GT(told.front(), 0.0);
+  EXPECT_TRUE(std::ranges::is_sorted(told));
+  EXPECT_EQ(std::ranges::count(told, ReferenceOptions::coarse_share), 1);
+  EXPECT_DOUBLE_EQ(told.back(), 1.0);
+  options.progress = [](double fraction) {
+    if (fraction > 0.1) throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(certified_reference(ivp, 5.0, options), std::runtime_error);
 }
 
 }  // namespace

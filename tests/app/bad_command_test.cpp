@@ -43,6 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"ListUnknown", {"list", "method"}, {}, {"method", "methods", "problems"}},
         BadInput{"ListUnknownOption", {"list", "methods", "--xml"}, {}, {"--xml"}},
         BadInput{"DescribeNothing", {"describe"}, {}, {"name"}},
+        BadInput{"DescribeNameOfOthers", {"describe", "dopri5"}, {}, {"called \"dormand_prince_54\" here"}},
         BadInput{"DescribeUnknown", {"describe", "rk5"}, {}, {"rk5", "did you mean \"rk4\""}},
         BadInput{"ShowNothing", {"show"}, {}, {"file"}}, BadInput{"RunNothing", {"run"}, {}, {"study"}},
         BadInput{"ControlCharacters", {"describe", "a\nb\x1b[31m"}, {}, {"unknown name"}}),

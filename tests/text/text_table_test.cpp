@@ -72,7 +72,7 @@ TEST(TextTable, WrapsTextAndHeadsInTheirColumns) {
 TEST(TextTable, PutsALastColumnOfTextOnLinesOfItsOwn) {
   EXPECT_EQ(sample().text(32),
             "method           expected_order\n"
-            "reason\n"
+            "    reason\n"
             "---------------  --------------\n"
             "rk4                           4\n"
             "    position 4.001 and velocity\n"
