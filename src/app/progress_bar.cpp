@@ -75,7 +75,7 @@ std::string running_text(const std::vector<study::RunningCase>& running) {
   if (first.stage) {
     const double fraction = first.stage->fraction;
     text += fmt::format(" ({}: {:.0f} %", first.stage->what, 100.0 * fraction);
-    if (fraction < 1.0) {
+    if (fraction >= 0.01 && fraction < 1.0) {  // before, an estimate would be noise
       text += fmt::format(", about {} left", duration_text(time_left(first.stage_seconds, fraction)));
     }
     text += ")";

@@ -217,7 +217,8 @@ def examine(build_directory):
             raise Failure(f"{method}: {rows}")
     answer = run([str(executable), "run", "energy_drift.toml", "-o", "energy_drift"], tree)
     holds = len(re.findall(r"\bholds\b", answer.stdout))
-    if holds != 3 or "largest drift 39 J" not in re.sub(r"drift (39)\.?\d* J", r"drift \1 J", answer.stdout):
+    words = " ".join(answer.stdout.split())  # reasons are wrapped
+    if holds != 3 or not re.search(r"largest drift 39(\.\d*)? J", words):
         raise Failure(f"three cases hold and explicit Euler gains 39 J, says the page, but:\n{answer.stdout}")
 
     # The seeded mistake that the page names.
