@@ -191,6 +191,10 @@ table = { t = [5.0, 5.001, 5.002], value = [[0, 0, 0], [500, 0, 0], [0, 0, 0]] }
     EXPECT_NEAR(end(name, true), expected, 1e-6) << name;
   }
   EXPECT_NEAR(end("dormand_prince_54", false), 0.0, 1e-6);  // the pulse is not seen
+  const analysis::ReferenceSolution reference = analysis::certified_reference(pulse, 10.0);
+  ASSERT_TRUE(reference.status.ok()) << reference.status.describe();
+  EXPECT_NEAR(static_cast<double>(reference.states.back().value[0]), expected, 1e-12);
+  EXPECT_LT(reference.states.back().largest_error(), 1e-15);
 }
 
 }  // namespace
