@@ -125,8 +125,8 @@ LowestMode lowest_mode(const SecondOrderSystem& system, ConstVectorRef position,
   }
   for (const auto& [end, value] : {std::pair{linalg::SpectrumEnd::largest_real, &mode.largest},
                                    std::pair{linalg::SpectrumEnd::smallest_real, &mode.lambda}}) {
-    const linalg::ExtremeEigenvalues found =
-        linalg::extreme_eigenvalues_symmetric(scaled, {.end = end, .tolerance = 1e-8});
+    const linalg::ExtremeEigenvalues found = linalg::extreme_eigenvalues_symmetric(
+        scaled, linalg::EigenvalueOptions{.end = end, .tolerance = 1e-8});
     if (!found.status.ok()) mode.status = found.status;
     if (!found.values.empty()) *value = found.values.front().real();
   }
