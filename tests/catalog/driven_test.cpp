@@ -103,11 +103,17 @@ void expect_orders(const Ivp& ivp, const Vector& expected, const std::vector<std
       refused.push_back(entry.name);
       continue;
     }
-    const double fine = end_error(*method, ivp, FixedStep{.step = 1.0 / 64.0}, expected).error;
-    EXPECT_LT(fine, 0.1) << info.name;
-    const double order = std::log2(coarse.error / fine);
-    if (fine < 1e-10) continue;
-    EXPECT_GT(order, order_on(info, *ivp.system) - 0.45) << info.name << ": error " << fine;
+    // Where two terms of the error cancel in part, the order shows at smaller steps only.
+    double error = coarse.error, order = 0.0;
+    for (double step = 1.0 / 64.0; step > 1e-3 && error > 1e-10; step /= 2.0) {
+      const double finer = end_error(*method, ivp, FixedStep{.step = step}, expected).error;
+      order = std::log2(error / finer);
+      error = finer;
+      if (order > order_on(info, *ivp.system) - 0.3) break;
+    }
+    EXPECT_LT(error, 0.1) << info.name;
+    EXPECT_TRUE(error <= 1e-10 || order > order_on(info, *ivp.system) - 0.3)
+        << info.name << ": order " << order << ", error " << error;
   }
   EXPECT_GT(count, 80);
   EXPECT_EQ(refused, refusing);
@@ -181,10 +187,14 @@ table = { t = [5.0, 5.001, 5.002], value = [[0, 0, 0], [500, 0, 0], [0, 0, 0]] }
     return solution.state[0];
   };
   for (const char* name :
-       {"dormand_prince_54", "dormand_prince_853", "sundials:cvode_adams", "petsc:rk5dp"}) {
+       {"dormand_prince_54", "dormand_prince_853", "sundials:cvode_adams", "petsc:ts_rk"}) {
     EXPECT_NEAR(end(name, true), expected, 1e-6) << name;
   }
   EXPECT_NEAR(end("dormand_prince_54", false), 0.0, 1e-6);  // the pulse is not seen
+  const analysis::ReferenceSolution reference = analysis::certified_reference(pulse, 10.0);
+  ASSERT_TRUE(reference.status.ok()) << reference.status.describe();
+  EXPECT_NEAR(static_cast<double>(reference.states.back().value[0]), expected, 1e-12);
+  EXPECT_LT(reference.states.back().largest_error(), 1e-15);
 }
 
 }  // namespace
