@@ -112,7 +112,8 @@ int find(const EquilibriumArguments& arguments, const std::string& command_line)
   const scene::Scene scene = scene::read_scene(arguments.scene);
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   const mechanics::MassSpringSystem system(scene.model);
-  Report report{.found = catalog::find_equilibrium(system, scene.position, 0.0, arguments.solver)};
+  Report report{.found = catalog::find_equilibrium(system, scene.position, 0.0, arguments.solver),
+                .lowest = {}};
   if (!report.found.status.ok()) {
     fmt::print(
         stderr,
