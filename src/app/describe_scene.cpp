@@ -64,7 +64,9 @@ std::vector<SpringRate> stiffest_springs(const mechanics::MassSpringSystem& syst
 }
 
 SceneFacts facts_of(const std::string& file) {
-  SceneFacts facts{.file = file, .scene = read_scene_for(file, "describe")};
+  SceneFacts facts;
+  facts.file = file;
+  facts.scene = read_scene_for(file, "describe");
   facts.system = std::make_shared<const mechanics::MassSpringSystem>(facts.scene.model);
   facts.state = initial_state(facts.scene);
   if (facts.scene.starts_at_equilibrium) {

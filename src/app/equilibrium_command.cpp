@@ -113,7 +113,8 @@ int find(const EquilibriumArguments& arguments, const std::string& command_line)
   for (const std::string& warning : scene.warnings) fmt::print(stderr, "federwerk: warning: {}\n", warning);
   if (!arguments.output.empty()) prepare_output_file(arguments.output);
   const mechanics::MassSpringSystem system(scene.model);
-  Report report{.found = catalog::find_equilibrium(system, scene.position, 0.0, arguments.solver), .lowest = {}};
+  Report report{.found = catalog::find_equilibrium(system, scene.position, 0.0, arguments.solver),
+                .lowest = {}};
   if (!report.found.status.ok()) {
     fmt::print(
         stderr,
