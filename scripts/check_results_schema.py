@@ -65,11 +65,18 @@ def pattern(path):
     return re.compile("[^/]+".join(re.escape(part) for part in re.split(r"<\w+>", path)))
 
 
+def is_optional(row):
+    """What there is "only where" or "only with" something, as its meaning begins."""
+    return row.get("meaning", "").startswith("only w")
+
+
 def check_attributes(rows, attributes, where):
     described = {name_of(row): row["type"] for row in rows}
+    optional = {name_of(row) for row in rows if is_optional(row)}
     for name, type_ in described.items():
         if name not in attributes:
-            yield f"{where}attribute {name} is missing"
+            if name not in optional:
+                yield f"{where}attribute {name} is missing"
         elif value_type(attributes[name]) != type_:
             yield f"{where}attribute {name} is {value_type(attributes[name])}, described as {type_}"
     for name in attributes:
@@ -112,7 +119,7 @@ def check_dataset(path, dataset, row, sizes):
 def check_presence(group, row, members):
     """Holds a row against a group that it applies to: `members` are the names of its datasets."""
     name = name_of(row).rsplit("/", 1)[1]
-    there = row.get("present", "always")
+    there = row.get("present", "sometimes" if is_optional(row) else "always")
     found = any(pattern(name).fullmatch(member) for member in members)
     condition = re.fullmatch(r"(with|without) `(\w+)`", there)
     if condition:

@@ -19,7 +19,8 @@ using testing::HasSubstr;
 
 /// The next answer; nothing if the worker ends or says nothing for ten seconds.
 std::optional<std::string> answer_of(WorkerProcess& worker) {
-  for (int wait = 0; wait < 100 && !worker.has_ended(); ++wait) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!worker.has_ended() && std::chrono::steady_clock::now() < deadline) {
     pollfd watched{worker.descriptor(), POLLIN, 0};
     ::poll(&watched, 1, 100);
     if (std::optional<std::string> answer = worker.receive()) return answer;
