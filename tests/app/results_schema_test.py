@@ -20,7 +20,8 @@ import check_results_schema  # noqa: E402
 SCENES = SOURCE / "studies" / "scenes"
 DESCRIPTION = (SOURCE / "docs" / "results_schema.md").read_text(encoding="utf-8")
 
-SIMULATED_SCENES = ["double_spring", "box_and_anchor", "refined_chain_strain", "grid_on_sphere", "net_on_ropes"]
+SIMULATED_SCENES = ["double_spring", "box_and_anchor", "refined_chain_strain", "grid_on_sphere", "net_on_ropes", "pulled_grid"]
+EVENTS = {"pulled_grid": ["--log-at", "energy:kinetic"]}
 
 
 class ResultsSchema(unittest.TestCase):
@@ -38,7 +39,7 @@ class ResultsSchema(unittest.TestCase):
             cls.run_federwerk("run", study, "-o", cls.folder, codes=(0, 1))
         for name in SIMULATED_SCENES:
             cls.run_federwerk("simulate", SCENES / f"{name}.toml", "--method", "rk4", "--step", "0.0005", "--t-end", "0.01",
-                              "--frames", "5", "-o", cls.folder / f"{name}.h5")
+                              "--frames", "5", *EVENTS.get(name, []), "-o", cls.folder / f"{name}.h5")
 
     @classmethod
     def run_federwerk(cls, *arguments, codes=(0,)):
@@ -89,7 +90,7 @@ class ResultsSchema(unittest.TestCase):
                 self.assertTrue(any(path.rsplit("/", 1)[1].startswith(end) for path in found), line)
 
     def test_without_a_row_its_datasets_are_not_described(self):
-        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring net_on_ropes"),
+        for kind, name in (("convergence", "convergence"), ("simulate", "trajectories decay"), ("trajectory", "double_spring net_on_ropes pulled_grid"),
                            ("stability", "stability"), ("energy", "energy"), ("dissipation", "dissipation"), ("propagation", "propagation"),
                            ("verify", "verify")):
             before, section = DESCRIPTION.split(f"## Kind `{kind}`")

@@ -12,7 +12,7 @@
 namespace fw::catalog {
 namespace {
 
-std::string refusal_of(const std::string& call) {
+std::string refusal_of_call(const std::string& call) {
   try {
     make_method(call);
   } catch (const InputError& error) {
@@ -55,7 +55,7 @@ TEST(DeclaredOptions, RefuseWhatIsWrongByMethodOptionFoundAndExpected) {
       {"sundials:arkode_erk[table=cash_karp_6_4_5,tableau=rk4]",
        "method \"sundials:arkode_erk\": options table and tableau: found both, expected one of them"},
   };
-  for (const auto& [call, message] : calls) EXPECT_EQ(refusal_of(call), message);
+  for (const auto& [call, message] : calls) EXPECT_EQ(refusal_of_call(call), message);
 }
 
 TEST(DeclaredOptions, ChangeTheMethod) {
