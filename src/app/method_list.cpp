@@ -34,8 +34,8 @@ bool is_in_family(const MethodInfo& info, const std::string& part) {
 std::string order_text(const MethodInfo& info) {
   if (info.order == 0) return "variable";
   if (info.order == info.order_with_velocity_forces) return std::to_string(info.order);
-  if (info.order_with_velocity_forces == 0) return fmt::format("{} (f(t, q) only)", info.order);
-  return fmt::format("{} ({} with dampers)", info.order, info.order_with_velocity_forces);
+  if (info.order_with_velocity_forces == 0) return fmt::format("{} (-)", info.order);
+  return fmt::format("{} ({})", info.order, info.order_with_velocity_forces);
 }
 
 std::string yes_or_blank(bool value) {
@@ -150,12 +150,11 @@ std::string methods_overview(std::size_t width) {
 
 std::string methods_table(const std::vector<const MethodEntry*>& methods, std::size_t width) {
   if (methods.empty()) return "no method is like that; \"federwerk list methods\" shows the families\n";
-  std::vector<std::string> name, order, stages, kind, steps, symplectic, stable, title;
+  std::vector<std::string> name, order, kind, steps, symplectic, stable, title;
   for (const MethodEntry* entry : methods) {
     const MethodInfo& info = entry->info();
     name.push_back(info.name);
     order.push_back(order_text(info));
-    stages.push_back(std::to_string(info.stages));
     kind.push_back(info.is_explicit ? "explicit" : "implicit");
     steps.push_back(!info.is_adaptive ? "fixed" : info.has_fixed_step ? "both" : "adaptive");
     symplectic.push_back(yes_or_blank(info.is_symplectic));
@@ -165,13 +164,14 @@ std::string methods_table(const std::vector<const MethodEntry*>& methods, std::s
   TextTable table;
   table.add_column("name", TextTable::Align::left, name);
   table.add_column("order", TextTable::Align::left, order);
-  table.add_column("stages", TextTable::Align::right, stages);
   table.add_column("kind", TextTable::Align::left, kind);
   table.add_column("step", TextTable::Align::left, steps);
   table.add_column("symplectic", TextTable::Align::left, symplectic);
   table.add_column("stable", TextTable::Align::left, stable);
   table.add_column("title", TextTable::Align::left, title);
-  return table.text(width) + fmt::format("\n{} method{}\n", methods.size(), methods.size() == 1 ? "" : "s");
+  return table.text(width) +
+         fmt::format("\n{} method{}; in parentheses the order with dampers, where another; - none\n",
+                     methods.size(), methods.size() == 1 ? "" : "s");
 }
 
 std::string methods_json(const std::vector<const MethodEntry*>& methods) {

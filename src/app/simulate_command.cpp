@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,8 @@
 #include "store/trajectory_writer.hpp"
 #include "store/xdmf.hpp"
 #include "study/measure/energy_gauge.hpp"
+#include "system/terminal.hpp"
+#include "text/wrapped_lines.hpp"
 
 namespace fw::app {
 
@@ -126,9 +129,11 @@ std::string default_output(const SimulateArguments& arguments) {
 
 void print_summary(const std::string& output, const Solution& solution, std::uint64_t frames,
                    const record::FrameOrigin& origin, std::uint64_t degenerate) {
-  fmt::print("{}: {} frames{} to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s\n", output, frames,
-             origin.spacing == "uneven" ? ", unevenly spaced," : "", solution.time,
-             solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
+  const std::string summary =
+      fmt::format("{} frames{} to t = {:.6g} s, {} steps, {} right-hand sides, {:.3g} s", frames,
+                  origin.spacing == "uneven" ? ", unevenly spaced," : "", solution.time,
+                  solution.work.accepted_steps, solution.work.rhs_evaluations, solution.work.seconds);
+  fmt::print("{}", text::wrapped_paragraph(output + ": ", summary, terminal_width(STDOUT_FILENO), 2));
   if (degenerate > 0) {
     fmt::print(stderr,
                "federwerk: note: a spring of length zero was met {} times; its direction is undefined, its "

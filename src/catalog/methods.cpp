@@ -165,9 +165,7 @@ std::vector<MethodEntry> make_list() {
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::central); }, std::move(verlet)));
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::backward); },
                        verlet_theory(LinearRule::verlet_backward_velocity)));
-  list.push_back(plain(integrators::make_predicted_velocity_verlet,
-                       {.on_position_forces = named(schemes::splitting_schemes(), "velocity_verlet"),
-                        .modified_energy = analysis::velocity_verlet_energy}));
+  list.push_back(plain(integrators::make_predicted_velocity_verlet));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {

@@ -83,7 +83,7 @@ TEST(Equilibrium, IsWhereAStudyStartsOnRequest) {
   store::test::write_bytes(scratch / "bad.toml", "start = 'equilibirum'\n" + hanging_pair);
   const ProcessResult bad = run(scratch.path(), {"check", "bad.toml"});
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.err, HasSubstr("start: found \"equilibirum\""));
+  EXPECT_THAT(bad.err, HasSubstr("start: found the string \"equilibirum\""));
 }
 
 TEST(SimulateFrom, StartsFromTheLastFrameOfAResult) {

@@ -42,9 +42,13 @@ bool limit_file_size(rlim_t bytes) {
 
 /// Whether `result` is that of a full disk: exit code 3 and one message with the name of the file.
 bool says_disk_full(const ProcessResult& result, const std::string& name) {
-  const bool right = result.exit_code == 3 && result.err.starts_with("federwerk: disk full") &&
-                     result.err.find(name) != std::string::npos &&
-                     result.err.find('\n') == result.err.size() - 1;
+  // The last line; before it only that an earlier result is replaced.
+  const std::size_t end = result.err.rfind('\n', result.err.size() < 2 ? 0 : result.err.size() - 2);
+  const std::size_t start = end == std::string::npos ? 0 : end + 1;
+  const std::string last = result.err.substr(start);
+  const bool right = result.exit_code == 3 && last.starts_with("federwerk: disk full") &&
+                     last.find(name) != std::string::npos &&
+                     (start == 0 || result.err.find("is replaced") < start);
   if (!right) std::fprintf(stderr, "exit code %d: %s\n", result.exit_code, result.err.c_str());
   return right;
 }
