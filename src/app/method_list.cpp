@@ -126,7 +126,7 @@ std::string methods_overview(std::size_t width) {
     family_names.push_back(family);
     counts.push_back(std::to_string(methods.size()));
     ranges.push_back(range_of_orders(methods));
-    constexpr std::size_t most_examples = 3;
+    constexpr std::size_t most_examples = 2;
     std::vector<std::string> some;
     for (std::size_t k = 0; k < std::min(most_examples, methods.size()); ++k)
       some.push_back(methods[k]->name);

@@ -84,9 +84,9 @@ def state_of(process):
 def finished(text, kept=None):
     """Names of the cases that the run called finished; with `kept`, only those (not) taken from an earlier run."""
     names = []
-    for line in text.splitlines():
+    for line in re.sub(r"\n {3,}", " ", text).splitlines():  # reasons are wrapped
         found = FINISHED.match(line)
-        if found and "could not" not in line and kept in (None, line.endswith("(kept)")):
+        if found and "could not" not in line and kept in (None, "(kept)" in line):
             names.append(found.group(2))
     return names
 
@@ -140,8 +140,9 @@ class FaultInjection(unittest.TestCase):
                 kills += killed
                 again = set(finished(out, kept=False)) & done
                 self.assertEqual(again, set(), "finished cases were run again")
+                words = re.sub(r"\n {3,}", " ", out)  # reasons are wrapped
                 done |= {name for name in finished(out)
-                         if not re.search(rf"{re.escape(name)} +the process of this case ended", out)}
+                         if not re.search(rf" {re.escape(name)} .*the process of this case ended", words)}
                 self.check_files()
                 if code == 0:
                     self.assertEqual(len(done), 24)
