@@ -160,12 +160,12 @@ std::vector<MethodEntry> make_list() {
   list.push_back(runge_kutta_chebyshev(2));
   using analysis::LinearRule;
   using integrators::VerletVelocity;
+  list.push_back(plain(integrators::make_predicted_velocity_verlet));
   analysis::Theory verlet = verlet_theory(LinearRule::verlet_central_velocity);
   verlet.modified_energy = analysis::velocity_verlet_energy;  // its velocity is velocity Verlet's
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::central); }, std::move(verlet)));
   list.push_back(plain([] { return integrators::make_verlet(VerletVelocity::backward); },
                        verlet_theory(LinearRule::verlet_backward_velocity)));
-  list.push_back(plain(integrators::make_predicted_velocity_verlet));
   for (const schemes::ButcherTableau& tableau : schemes::diagonally_implicit_tableaus()) {
     list.push_back(
         with_controller(tableau, [](const auto& data, const integrators::ControllerOptions& controller) {
