@@ -46,7 +46,9 @@ def signed_curve(panel, z, values, measured, style, width=1.7):
     for sign, line_width in ((1, width), (-1, 0.55 * width)):
         part = numpy.where(sign * known > FLOOR, numpy.abs(known), numpy.nan)
         panel.loglog(z, part, linewidth=line_width, **style)
-    shown = numpy.where(numpy.abs(measured) > FLOOR, numpy.abs(measured), numpy.nan)
+    # A zero of theory is measured as the rounding of a double root.
+    is_there = (numpy.abs(measured) > FLOOR) & ~(numpy.abs(known) <= FLOOR)
+    shown = numpy.where(is_there, numpy.abs(measured), numpy.nan)
     every = max(1, z.size // MOST_MARKERS)
     panel.loglog(z[::every], shown[::every], linestyle="none", marker="o", markersize=4, color=style["color"])
 

@@ -74,7 +74,7 @@ SceneFacts facts_of(const std::string& file) {
         catalog::require_equilibrium(*facts.system, facts.scene.position);
   }
   facts.stiffest = stiffest_springs(*facts.system);
-  facts.modes = catalog::modes_at(*facts.system, 0.0, facts.state);
+  facts.modes = catalog::modes_at(*facts.system, 0.0, facts.state, catalog::SpectrumQuality::thorough);
   for (const std::string& call : catalog::first_methods()) {
     catalog::StableStep step = catalog::stable_step(call, facts.modes, *facts.system);
     if (step.why != "it chooses its own steps") facts.steps.push_back(std::move(step));
@@ -99,16 +99,23 @@ std::string range_of(const std::vector<double>& values, const char* unit) {
                        : fmt::format("{:.6g} to {:.6g} {}", *low, *high, unit);
 }
 
-std::string step_text(const catalog::StableStep& step) {
+/// With this many digits, or as many as are known.
+std::string number(double value, int digits, bool is_rough) {
+  return is_rough ? fmt::format("about {:.3g}", value) : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string step_text(const catalog::StableStep& step, bool is_rough) {
   if (std::isnan(step.step)) return step.why;
   if (std::isinf(step.step)) return "no limit";
   if (step.step == 0.0) return "none: an undamped mode grows at every step";
-  return fmt::format("{:.4g} ms", 1e3 * step.step);
+  return number(1e3 * step.step, 4, is_rough) + " ms";
 }
 
 std::string to_text(const SceneFacts& facts) {
   const mechanics::MassSpringModel& model = facts.system->model();
-  std::string text = fmt::format("{}\n{}\n\n", facts.file, facts.scene.title);
+  std::string text = facts.file + "\n";
+  if (!facts.scene.title.empty()) text += facts.scene.title + "\n";
+  text += "\n";
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<24} {}\n", label, value);
   };
@@ -142,10 +149,11 @@ std::string to_text(const SceneFacts& facts) {
     return text;
   }
   const auto [slowest, fastest] = frequencies(facts.modes);
-  line("largest |eigenvalue|", fmt::format("{:.6g} 1/s", facts.modes.spectral_radius));
+  const bool rough = facts.modes.is_rough;
+  line("largest |eigenvalue|", number(facts.modes.spectral_radius, 6, rough) + " 1/s");
   if (!std::isnan(fastest)) {
-    line("fastest vibration",
-         fmt::format("{:.6g} rad/s, period {:.4g} ms", fastest, 1e3 * 2.0 * std::numbers::pi / fastest));
+    line("fastest vibration", fmt::format("{} rad/s, period {} ms", number(fastest, 6, rough),
+                                          number(1e3 * 2.0 * std::numbers::pi / fastest, 4, rough)));
   }
   if (!std::isnan(slowest)) {
     line("slowest vibration",
@@ -155,7 +163,7 @@ std::string to_text(const SceneFacts& facts) {
     line("growing modes", fmt::format("{} (compressed springs buckle)", facts.modes.growing));
   }
   text += "\nLargest stable step at the start, in theory\n";
-  for (const catalog::StableStep& step : facts.steps) line(step.call.c_str(), step_text(step));
+  for (const catalog::StableStep& step : facts.steps) line(step.call.c_str(), step_text(step, rough));
   return text;
 }
 
@@ -183,6 +191,7 @@ std::string to_json(const SceneFacts& facts) {
   json.end_array();
   json.key("spectral_radius").value(facts.modes.spectral_radius);
   json.key("fastest_vibration").value(fastest).key("slowest_vibration").value(slowest);
+  json.key("is_rough").value(facts.modes.is_rough);
   json.key("growing_modes").value(static_cast<std::int64_t>(facts.modes.growing));
   json.key("stable_steps").begin_array();
   for (const catalog::StableStep& step : facts.steps) {

@@ -28,7 +28,8 @@ struct EventRequest {
   bool stops = false;  ///< ends the run
 };
 
-/// Reads those of --log-at and --stop-at. Throws InputError that names the option and shows the forms, or the index that is out of range.
+/// Reads those of --log-at and --stop-at. Throws InputError that names the option and shows the forms, or the
+/// index that is out of range.
 std::vector<EventRequest> parse_events(const std::vector<std::string>& log_at,
                                        const std::vector<std::string>& stop_at,
                                        const mechanics::MassSpringSystem& system);

@@ -196,8 +196,8 @@ int simulate(SimulateArguments arguments, const std::string& command_line) {
     throw InputError(
         "found events and a checkpoint: --log-at and --stop-at do not go with --checkpoint and --continue");
   }
-  if (integrator->info().needs.has(Capability::second_order) && ivp.system->second_order() == nullptr) {
-    throw InputError("the scene is no second-order system");
+  if (const std::string why = why_not_applicable(integrator->info(), *system); !why.empty()) {
+    throw InputError(fmt::format("method \"{}\": {}", integrator->info().name, why));
   }
   prepare_output_file(arguments.output, {.xdmf = arguments.xdmf, .continues = from.has_value()});
   tell_of_short_last_step(control, count, arguments.end_time);

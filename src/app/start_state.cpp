@@ -34,19 +34,19 @@ Vector start_state(const scene::Scene& scene, const mechanics::MassSpringSystem&
 
 StepAdvice advise_on_step(const std::string& call, double step, const mechanics::MassSpringSystem& system,
                           ConstVectorRef start) {
-  const catalog::StableStep stable =
-      catalog::stable_step(call, catalog::modes_at(system, 0.0, start), system);
+  const catalog::StableStep stable = catalog::stable_step(
+      call, catalog::modes_at(system, 0.0, start, catalog::SpectrumQuality::quick), system);
   StepAdvice advice;
   if (std::isnan(stable.step) || std::isinf(stable.step)) return advice;
   if (stable.step == 0.0) {
     advice.note = "no step is stable at the start, in theory: an undamped mode grows at every step";
     return advice;
   }
-  advice.note = fmt::format("the step is {:.3g} of the largest stable one at the start, {:.4g} s in theory",
+  advice.note = fmt::format("the step is {:.3g} of the largest stable one at the start, {:.3g} s in theory",
                             step / stable.step, stable.step);
   if (step > stable.step) {
     advice.warning = fmt::format(
-        "the step {} s is above the largest stable one at the start, {:.4g} s in theory: expect growth; take "
+        "the step {} s is above the largest stable one at the start, {:.3g} s in theory: expect growth; take "
         "a "
         "shorter step or an implicit method",
         step, stable.step);

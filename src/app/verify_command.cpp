@@ -94,25 +94,31 @@ std::string table(const StudyResult& result, bool all) {
     return std::count_if(rows.begin(), rows.end(),
                          [verdict](const Row& row) { return row.verdict == to_string(verdict); });
   };
-  TextTable text;
-  const auto add = [&](const char* name, std::string Row::*cell) {
-    std::vector<std::string> cells;
-    for (const Row& row : rows) {
-      if (!all && row.verdict == to_string(Verdict::not_applicable)) continue;
-      cells.push_back(row.*cell);
-    }
-    text.add_column(name, TextTable::Align::left, cells);
-  };
-  add("method", &Row::method);
-  add("property", &Row::property);
-  add("claimed", &Row::claimed);
-  add("derived", &Row::derived);
-  add("measured", &Row::measured);
-  add("verdict", &Row::verdict);
-  add("reason", &Row::reason);
-  return text.text(terminal_width(STDOUT_FILENO)) +
-         fmt::format("\n{} methods: {} verdicts hold, {} fail, {} not applicable\n", result.cases.size(),
-                     count(Verdict::holds), count(Verdict::fails), count(Verdict::not_applicable));
+  std::string out;
+  // A table per method: its name stands above it, whole.
+  for (auto first = rows.begin(); first != rows.end();) {
+    const auto last =
+        std::find_if(first, rows.end(), [&](const Row& row) { return row.method != first->method; });
+    TextTable text;
+    const auto add = [&](const char* name, std::string Row::*cell) {
+      std::vector<std::string> cells;
+      for (auto row = first; row != last; ++row) {
+        if (all || row->verdict != to_string(Verdict::not_applicable)) cells.push_back((*row).*cell);
+      }
+      text.add_column(name, TextTable::Align::left, cells);
+    };
+    add("property", &Row::property);
+    add("claimed", &Row::claimed);
+    add("derived", &Row::derived);
+    add("measured", &Row::measured);
+    add("verdict", &Row::verdict);
+    add("reason", &Row::reason);
+    out += fmt::format("{}\n{}\n", first->method, text.text(terminal_width(STDOUT_FILENO)));
+    first = last;
+  }
+  return out + fmt::format("{} method{}: {} verdicts hold, {} fail, {} not applicable\n", result.cases.size(),
+                           result.cases.size() == 1 ? "" : "s", count(Verdict::holds), count(Verdict::fails),
+                           count(Verdict::not_applicable));
 }
 
 std::string json(const StudyResult& result) {

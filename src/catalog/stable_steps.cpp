@@ -9,15 +9,21 @@ namespace fw::catalog {
 
 namespace {
 
-constexpr Index largest_dense = 400;
+constexpr Index largest_dense = 400, largest_thorough = 20'000;
 /// In units of one over the spectral radius: the first step that is looked at, and the last, beyond which a
 /// scheme counts as one without a limit.
 constexpr double first_step = 0.05, farthest_step = 1000.0;
 
 }  // namespace
 
-analysis::LinearModes modes_at(const OdeSystem& system, double t, ConstVectorRef y) {
-  return analysis::linear_modes(system, t, y, largest_dense);
+analysis::LinearModes modes_at(const OdeSystem& system, double t, ConstVectorRef y, SpectrumQuality quality) {
+  const SecondOrderSystem* second_order = system.second_order();
+  const Index limit = quality == SpectrumQuality::quick ? largest_dense : largest_thorough;
+  if (second_order != nullptr && system.size() > limit) return analysis::stiffest_modes(*second_order, t, y);
+  analysis::LinearModes modes = analysis::linear_modes(system, t, y, largest_dense);
+  // Where eigenvalues lie dense, their vectors take long to converge, not they.
+  if (second_order != nullptr && !modes.status.ok()) return analysis::stiffest_modes(*second_order, t, y);
+  return modes;
 }
 
 StableStep stable_step(const std::string& call, const analysis::LinearModes& modes, const OdeSystem& system) {

@@ -16,8 +16,14 @@ struct StableStep {
   std::string why{};  ///< why it is not known
 };
 
-/// All eigenvalues up to 400 unknowns, the largest above.
-analysis::LinearModes modes_at(const OdeSystem& system, double t, ConstVectorRef y);
+/// How well the largest eigenvalues of a large system are wanted.
+enum class SpectrumQuality {
+  quick,    ///< to about a hundredth (`analysis::stiffest_modes`): before every run
+  thorough  ///< to at least six digits up to 20 000 unknowns, which takes seconds there; above: quick
+};
+
+/// All eigenvalues up to 400 unknowns; above, the largest, as well as asked for.
+analysis::LinearModes modes_at(const OdeSystem& system, double t, ConstVectorRef y, SpectrumQuality quality);
 
 /// Of the method of a call on a system with these modes. Throws InputError for an unknown method or option.
 StableStep stable_step(const std::string& call, const analysis::LinearModes& modes, const OdeSystem& system);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <random>
 
@@ -82,7 +83,19 @@ void start_from_seed(EPS solver, PetscInt n) {
   petsc_check(EPSSetInitialSpace(solver, 1, list));
 }
 
-void collect(EPS solver, int count, ExtremeEigenvalues& result) {
+Vector eigenvector(EPS solver, PetscInt i, Index size) {
+  PetscVec part;
+  petsc_check(VecCreateSeq(PETSC_COMM_SELF, static_cast<PetscInt>(size), part.out()));
+  petsc_check(EPSGetEigenvector(solver, i, part, nullptr));
+  const PetscScalar* values = nullptr;
+  petsc_check(VecGetArrayRead(part, &values));
+  Vector vector = ConstVectorMap(values, size);
+  petsc_check(VecRestoreArrayRead(part, &values));
+  return vector / vector.norm();
+}
+
+void collect(EPS solver, Index size, const EigenvalueOptions& options, ExtremeEigenvalues& result) {
+  const int count = options.count;
   PetscInt converged = 0, iterations = 0;
   EPSConvergedReason reason = EPS_CONVERGED_ITERATING;
   petsc_check(EPSGetConverged(solver, &converged));
@@ -96,6 +109,7 @@ void collect(EPS solver, int count, ExtremeEigenvalues& result) {
     petsc_check(EPSComputeError(solver, i, EPS_ERROR_RELATIVE, &error));
     result.values.emplace_back(real, imaginary);
     result.residuals.push_back(error);
+    if (options.vectors) result.vectors.push_back(eigenvector(solver, i, size));
   }
   if (converged < count) {
     result.status = {StatusCode::linear_solver_failed,
@@ -104,22 +118,43 @@ void collect(EPS solver, int count, ExtremeEigenvalues& result) {
   }
 }
 
-void check(const SparseMatrix& A, const EigenvalueOptions& options) {
-  if (A.rows() != A.cols() || A.rows() == 0) {
+void check(Index rows, Index columns, const EigenvalueOptions& options) {
+  if (rows != columns || rows == 0) {
     throw InputError(
-        fmt::format("eigenvalues: found {} x {} entries, expected a square matrix", A.rows(), A.cols()));
+        fmt::format("eigenvalues: found {} x {} entries, expected a square matrix", rows, columns));
   }
-  if (options.count < 1 || options.count > A.rows()) {
-    throw InputError(fmt::format("eigenvalues: found count {}, expected 1 to {}", options.count, A.rows()));
+  if (options.count < 1 || options.count > rows) {
+    throw InputError(fmt::format("eigenvalues: found count {}, expected 1 to {}", options.count, rows));
   }
   if (!(options.tolerance > 0.0)) {
     throw InputError(fmt::format("eigenvalues: found tolerance {}, expected > 0", options.tolerance));
   }
 }
 
+/// The eigenvalues of A x = λ B x, B null: the identity.
+void solve(Mat A, Mat B, Index size, EPSProblemType type, const EigenvalueOptions& options,
+           const PetscOptionText& text, ExtremeEigenvalues& result) {
+  SlepcEps solver;
+  petsc_check(EPSCreate(PETSC_COMM_SELF, solver.out()));
+  petsc_check(EPSSetOperators(solver, A, B));
+  petsc_check(EPSSetProblemType(solver, type));
+  petsc_check(EPSSetType(solver, EPSKRYLOVSCHUR));
+  petsc_check(EPSSetWhichEigenpairs(solver, which_of(options.end)));
+  petsc_check(EPSSetDimensions(solver, options.count, PETSC_DEFAULT, PETSC_DEFAULT));
+  petsc_check(EPSSetTolerances(solver, options.tolerance,
+                               options.max_iterations > 0 ? options.max_iterations : PETSC_DEFAULT));
+  if (options.end == SpectrumEnd::smallest_magnitude) invert_at_zero(solver);
+  start_from_seed(solver, static_cast<PetscInt>(size));
+  with_options_to_blame(text, [&] { petsc_check(EPSSetFromOptions(solver)); });
+  petsc_check(EPSSetUp(solver));
+  text.check_all_used();
+  petsc_check(EPSSolve(solver));
+  collect(solver, size, options, result);
+}
+
 ExtremeEigenvalues solve(SparseMatrix A, const Vector* mass, EPSProblemType type,
                          const EigenvalueOptions& options) {
-  check(A, options);
+  check(A.rows(), A.cols(), options);
   if (mass != nullptr && (mass->size() != A.rows() || !(mass->minCoeff() > 0.0))) {
     throw InputError(fmt::format("eigenvalues: expected {} masses > 0", A.rows()));
   }
@@ -140,26 +175,36 @@ ExtremeEigenvalues solve(SparseMatrix A, const Vector* mass, EPSProblemType type
       mass_matrix = std::make_unique<PetscMatrix>(M, PetscMatrixType::aij);
       mass_matrix->set_values(M);
     }
-    SlepcEps solver;
-    petsc_check(EPSCreate(PETSC_COMM_SELF, solver.out()));
-    petsc_check(EPSSetOperators(solver, matrix.get(), mass_matrix ? mass_matrix->get() : nullptr));
-    petsc_check(EPSSetProblemType(solver, type));
-    petsc_check(EPSSetType(solver, EPSKRYLOVSCHUR));
-    petsc_check(EPSSetWhichEigenpairs(solver, which_of(options.end)));
-    petsc_check(EPSSetDimensions(solver, options.count, PETSC_DEFAULT, PETSC_DEFAULT));
-    petsc_check(EPSSetTolerances(solver, options.tolerance,
-                                 options.max_iterations > 0 ? options.max_iterations : PETSC_DEFAULT));
-    if (options.end == SpectrumEnd::smallest_magnitude) invert_at_zero(solver);
-    start_from_seed(solver, static_cast<PetscInt>(A.rows()));
-    with_options_to_blame(text, [&] { petsc_check(EPSSetFromOptions(solver)); });
-    petsc_check(EPSSetUp(solver));
-    text.check_all_used();
-    petsc_check(EPSSolve(solver));
-    collect(solver, options.count, result);
+    solve(matrix.get(), mass_matrix ? mass_matrix->get() : nullptr, A.rows(), type, options, text, result);
   } catch (const PetscFailure& failure) {
     result.status = status_of(failure);
   }
   return result;
+}
+
+/// What PETSc's shell matrix knows.
+struct Shell {
+  const MatrixProduct& product;
+  Index size;
+  std::exception_ptr thrown{};
+};
+
+PetscErrorCode multiply(Mat A, Vec x, Vec y) {
+  void* context = nullptr;
+  PetscCall(MatShellGetContext(A, &context));
+  auto& shell = *static_cast<Shell*>(context);
+  const PetscScalar* in = nullptr;
+  PetscScalar* out = nullptr;
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArrayWrite(y, &out));
+  try {
+    shell.product(ConstVectorMap(in, shell.size), VectorMap(out, shell.size));
+  } catch (...) {
+    shell.thrown = std::current_exception();
+  }
+  PetscCall(VecRestoreArrayWrite(y, &out));
+  PetscCall(VecRestoreArrayRead(x, &in));
+  return shell.thrown ? PETSC_ERR_USER : 0;
 }
 
 }  // namespace
@@ -171,6 +216,29 @@ ExtremeEigenvalues extreme_eigenvalues_symmetric(const SparseMatrix& A, const Ei
 ExtremeEigenvalues extreme_eigenvalues_symmetric(const SparseMatrix& K, const Vector& mass,
                                                  const EigenvalueOptions& options) {
   return solve(K, &mass, EPS_GHEP, options);
+}
+
+ExtremeEigenvalues extreme_eigenvalues_symmetric(Index size, const MatrixProduct& product,
+                                                 const EigenvalueOptions& options) {
+  check(size, size, options);
+  if (options.end == SpectrumEnd::smallest_magnitude) {
+    throw InputError("eigenvalues: the smallest in magnitude are found with a matrix, not with its products");
+  }
+  const PetscOptionText text(options.petsc);
+  ExtremeEigenvalues result;
+  Shell shell{product, size};
+  try {
+    const PetscSession session(&text);
+    const auto n = static_cast<PetscInt>(size);
+    PetscMat matrix;
+    petsc_check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &shell, matrix.out()));
+    petsc_check(MatShellSetOperation(matrix, MATOP_MULT, reinterpret_cast<void (*)()>(&multiply)));
+    solve(matrix, nullptr, size, EPS_HEP, options, text, result);
+  } catch (const PetscFailure& failure) {
+    if (shell.thrown) std::rethrow_exception(shell.thrown);
+    result.status = status_of(failure);
+  }
+  return result;
 }
 
 ExtremeEigenvalues extreme_eigenvalues(const SparseMatrix& A, const EigenvalueOptions& options) {

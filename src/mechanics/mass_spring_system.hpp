@@ -29,8 +29,9 @@ struct SystemParts {
 /// [Zachmann 2011, S5-S9].
 ///
 /// Forces, energies and matrices are sums over the force elements (mechanics/elements, mechanics/assembly);
-/// what depends on time is a force of its own beside them, which depends on nothing else (`Driving`). A fixed particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero
-/// in the state, so that it holds still in dampers and energies as well. Outputs may not alias inputs.
+/// what depends on time is a force of its own beside them, which depends on nothing else (`Driving`). A fixed
+/// particle has zero force, zero ẋ and v̇ and zero rows in J, K and D; its velocity is taken to be zero in the
+/// state, so that it holds still in dampers and energies as well. Outputs may not alias inputs.
 /// Evaluations allocate nothing but the pattern, which is made on first use of a matrix and shared by all
 /// threads.
 class MassSpringSystem final : public OdeSystem, public SecondOrderSystem {

@@ -46,8 +46,8 @@ struct ToleranceScaling {
 
 /// A foreign solver behind the interface of our own schemes: checks of the step control are the same for all
 /// of them, and the time loop is that of our own schemes. Side steps and side runs inside a step are those of
-/// a second solver of the same library, so that the run's own sequence of steps stays what it is. The memory of a library cannot be saved: a run with
-/// checkpoints is refused.
+/// a second solver of the same library, so that the run's own sequence of steps stays what it is. The memory of
+/// a library cannot be saved: a run with checkpoints is refused.
 class OracleIntegrator final : public Integrator {
  public:
   OracleIntegrator(MethodInfo info, ForeignStepperFactory make_stepper, ToleranceScaling scaling = {})

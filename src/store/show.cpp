@@ -9,6 +9,8 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "mechanics/mass_spring_system.hpp"
+#include "scene/scene.hpp"
 #include "store/show_content.hpp"
 #include "store/show_table.hpp"
 #include "text/json_writer.hpp"
@@ -65,18 +67,15 @@ std::string provenance(const Attributes& attributes, std::size_t width) {
   return out;
 }
 
-/// Whether the scene of a trajectory, in its resolved text with a key per line, has dampers or drag: a key
-/// "drag" or with "damping" in it whose value has a digit other than 0.
+/// Whether forces of the scene of a trajectory depend on velocities: dampers of any kind, drag. False where its
+/// text is no scene.
 bool loses_energy(const std::string& spec) {
-  std::istringstream lines(spec);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t equals = line.find(" = ");
-    if (equals == std::string::npos) continue;
-    const std::string key = line.substr(0, equals);
-    if (key.find("damping") == std::string::npos && key != "drag") continue;
-    if (line.find_first_of("123456789", equals) != std::string::npos) return true;
+  try {
+    const mechanics::MassSpringSystem system(scene::parse_scene(spec, "spec").model);
+    return system.force_class() == ForceClass::velocity;
+  } catch (const InputError&) {
+    return false;
   }
-  return false;
 }
 
 /// Whether a column is left out of the table for people: `case` repeats problem and method, and what ends in

@@ -172,6 +172,7 @@ std::string TextTable::paragraphs(std::size_t width) const {
     bool is_first = true;
     for (const Column& column : columns_) {
       if (row >= column.cells.size() || column.cells[row].empty()) continue;
+      if (column.align == Align::right && column.cells[row] == "nan") continue;
       const std::string pair = column.head + (column.head.empty() ? "" : " = ") + column.cells[row];
       const bool is_prose = &column == &columns_.back() && column.align == Align::left;
       const std::size_t used = displayed_width(line), needed = displayed_width(pair);

@@ -10,7 +10,8 @@ namespace fw::text {
 ///
 /// A table that is wider than it may be changes its form, the first of these that fits: text is wrapped inside
 /// its column (and heads at their blanks and underlines); the last column, if it is text, goes to lines of its
-/// own under each row; each row is a paragraph of `head = value`, without its empty cells.
+/// own under each row; each row is a paragraph of `head = value`, without its empty cells and
+/// numbers that are none (nan).
 class TextTable {
  public:
   enum class Align { left, right };

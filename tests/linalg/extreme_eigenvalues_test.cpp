@@ -141,6 +141,32 @@ TEST(ExtremeEigenvalues, EndWithAStatusWhereTheyCannotBeFound) {
   EXPECT_EQ(extreme_eigenvalues(infinite).status.code, StatusCode::non_finite);
 }
 
+TEST(ExtremeEigenvalues, AreFoundFromProductsAlone) {
+  const int n = 300;
+  const SparseMatrix K = chain(n, 3.0);
+  int products = 0;
+  const MatrixProduct product = [&](ConstVectorRef x, VectorRef out) {
+    ++products;
+    out = K * x;
+  };
+  const EigenvalueOptions options{
+      .end = SpectrumEnd::largest_real, .count = 2, .tolerance = 1e-10, .vectors = true};
+  const ExtremeEigenvalues found = extreme_eigenvalues_symmetric(n, product, options);
+  ASSERT_TRUE(found.status.ok()) << found.status.describe();
+  ASSERT_EQ(found.vectors.size(), 2u);
+  EXPECT_GT(products, 2);
+  for (int j = 0; j < 2; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    EXPECT_NEAR(found.values[k].real(), chain_eigenvalue(n, 3.0, n - j), 1e-9);
+    EXPECT_NEAR(found.vectors[k].norm(), 1.0, 1e-14);
+    EXPECT_LT((K * found.vectors[k] - found.values[k].real() * found.vectors[k]).norm(), 1e-8);
+  }
+  const MatrixProduct fails = [](ConstVectorRef, VectorRef) { throw SystemError("no product"); };
+  EXPECT_THROW(extreme_eigenvalues_symmetric(n, fails, options), SystemError);
+  EXPECT_THROW(extreme_eigenvalues_symmetric(n, product, {.end = SpectrumEnd::smallest_magnitude}),
+               InputError);
+}
+
 TEST(ExtremeEigenvalues, RefuseBadInput) {
   const SparseMatrix K = chain(20, 1.0);
   EXPECT_THROW(extreme_eigenvalues(SparseMatrix(3, 4)), InputError);

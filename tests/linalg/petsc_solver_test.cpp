@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "linalg/cloth_step.hpp"
+#include "linalg/petsc_call.hpp"
 #include "linalg/true_residual.hpp"
 #include "sparse/sparse_slots.hpp"
 
@@ -18,13 +19,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr PetscMatrixType storages[] = {PetscMatrixType::aij, PetscMatrixType::baij, PetscMatrixType::sbaij};
-
-LinearSolverOptions petsc(const std::string& options, PetscMatrixType storage = PetscMatrixType::aij) {
-  return {.kind = LinearSolverKind::petsc,
-          .relative_tolerance = 1e-10,
-          .petsc_options = options,
-          .petsc_matrix = storage};
-}
 
 /// A solve from scratch.
 struct PetscOutcome {
@@ -41,15 +35,6 @@ PetscOutcome solve_once(const LinearSolverOptions& options, const SparseMatrix& 
   outcome.set_up = solver->factorise(A, outcome.work);
   if (outcome.set_up.ok()) outcome.solve = solver->solve(b, outcome.x, outcome.work);
   return outcome;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
 }
 
 class PetscCombinations : public testing::TestWithParam<std::tuple<PetscMatrixType, const char*>> {};
@@ -251,20 +236,6 @@ TEST(PetscSolver, NamesAnOptionThatNobodyAsksFor) {
     EXPECT_THAT(message, HasSubstr(text));
     EXPECT_THAT(message, HasSubstr("nobody has asked for -"));
   }
-}
-
-TEST(PetscSolver, RefusesOptionsThatPrintOrTouchFilesByName) {
-  for (const std::string text :
-       {"-help", "-help intro", "-options_file /dev/zero", "-options_view", "-ksp_monitor",
-        "-ksp_view ascii:foo.txt", "-mat_view binary:foo", "-ts_monitor_solution ascii:foo.txt",
-        "-mg_levels_ksp_monitor_true_residual", "-ksp_converged_reason", "-log_view", "-info",
-        "-start_in_debugger", "-snes_test_jacobian", "-ts_save_trajectory", "-malloc_dump",
-        "-ksp_compute_eigenvalues"}) {
-    const std::string message = message_of([&] { make_linear_solver(petsc("-pc_type jacobi " + text)); });
-    EXPECT_THAT(message, HasSubstr(text.substr(0, text.find(' ')) + " prints, writes or reads files"))
-        << text;
-  }
-  EXPECT_NO_THROW(make_linear_solver(petsc("-ksp_type chebyshev -ksp_chebyshev_eigenvalues 0.1,1.1")));
 }
 
 TEST(PetscSolver, SaysWhatIsWrongWithTheValueOfAnOption) {

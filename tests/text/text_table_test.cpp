@@ -86,6 +86,7 @@ TEST(TextTable, WritesRowsAsParagraphsWhereColumnsDoNotFit) {
   table.add_column("case", Align::left, {"a", "b"});
   table.add_column("first_number", Align::right, {"1.23456e-05", ""});
   table.add_column("second_number", Align::right, {"6.54321e-05", "7.5"});
+  table.add_column("unknown", Align::right, {"nan", "nan"});
   table.add_column("reason", Align::left, {"none", "one"});
   EXPECT_EQ(table.text(24),
             "case = a\n"

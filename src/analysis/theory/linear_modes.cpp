@@ -231,6 +231,47 @@ LinearModes linear_modes(const OdeSystem& system, double t, ConstVectorRef y, In
   return modes;
 }
 
+LinearModes stiffest_modes(const SecondOrderSystem& system, double t, ConstVectorRef y) {
+  const Index n = system.degrees_of_freedom();
+  Vector inverse_root(n), scaled(n), product(n);
+  for (Index i = 0; i < n; ++i) {
+    inverse_root[i] = system.fixed()[static_cast<std::size_t>(i)] ? 0.0 : 1.0 / std::sqrt(system.mass()[i]);
+  }
+  const Vector zero = Vector::Zero(n);
+  const auto stiffness = [&](ConstVectorRef x, VectorRef out) {
+    scaled = inverse_root.cwiseProduct(x);
+    system.tangent_product(t, y.head(n), y.tail(n), scaled, zero, product);
+    out = -inverse_root.cwiseProduct(product);
+  };
+  const auto damping = [&](ConstVectorRef x, VectorRef out) {
+    scaled = inverse_root.cwiseProduct(x);
+    system.tangent_product(t, y.head(n), y.tail(n), zero, scaled, product);
+    out = -inverse_root.cwiseProduct(product);
+  };
+  LinearModes modes;
+  modes.is_complete = false;
+  modes.is_rough = true;
+  const linalg::EigenvalueOptions options{
+      .end = linalg::SpectrumEnd::largest_real, .tolerance = 1e-2, .max_iterations = 20, .vectors = true};
+  const auto add_mode = [&](const linalg::MatrixProduct& largest, const linalg::MatrixProduct& other,
+                            bool is_damping) {
+    const linalg::ExtremeEigenvalues found = linalg::extreme_eigenvalues_symmetric(n, largest, options);
+    if (!found.status.ok()) modes.status = found.status;
+    if (found.values.empty() || !(found.values.front().real() > 0.0)) return;
+    Vector image(n);
+    other(found.vectors.front(), image);
+    const double quotient = std::max(0.0, found.vectors.front().dot(image));
+    const double value = found.values.front().real();
+    modes.vibrations.push_back(is_damping ? VibrationMode{quotient, value} : VibrationMode{value, quotient});
+  };
+  add_mode(stiffness, damping, false);
+  if (system.force_class() == ForceClass::velocity) add_mode(damping, stiffness, true);
+  std::vector<Complex> roots;
+  for (const VibrationMode& mode : modes.vibrations) add_roots(mode, roots);
+  keep_eigenvalues(Eigen::Map<const Eigen::VectorXcd>(roots.data(), static_cast<Index>(roots.size())), modes);
+  return modes;
+}
+
 bool is_linear(const OdeSystem& system, double t, ConstVectorRef y) {
   SparseMatrix J = system.jacobian_pattern();
   system.jacobian(t, y, J);

@@ -32,12 +32,18 @@ struct LinearModes {
   bool is_complete = true;       ///< false: the largest eigenvalues only
   /// W and C; empty for first-order and for large systems.
   Matrix stiffness{}, damping{};
-  Status status{};  ///< of the eigenvalue solver
+  bool is_rough = false;  ///< eigenvalues are known to about a hundredth
+  Status status{};        ///< of the eigenvalue solver
 };
 
 /// All eigenvalues where the system has at most `largest_dense` unknowns, else the six largest in modulus by
 /// SLEPc (of an undamped system: the largest frequency). The damping of a large system is taken mode by mode.
 LinearModes linear_modes(const OdeSystem& system, double t, ConstVectorRef y, Index largest_dense);
+
+/// The stiffest and the most damped mode of a large system, without a matrix: the largest eigenvalues of
+/// −M^{−1/2} K M^{−1/2} and −M^{−1/2} D M^{−1/2} by Krylov spaces, each known to about a hundredth, with the
+/// Rayleigh quotient of the other on its vector. Costs a few dozen tangent products.
+LinearModes stiffest_modes(const SecondOrderSystem& system, double t, ConstVectorRef y);
 
 /// Whether J is the same, within 1e-10 of its largest entry, at three states about y and two later times.
 bool is_linear(const OdeSystem& system, double t, ConstVectorRef y);

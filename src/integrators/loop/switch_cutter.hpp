@@ -26,8 +26,9 @@ namespace fw::integrators {
 /// end of the step. A net of a thousand ropes switches in every step all the same. A kink that the step resolves
 /// (ω h ≤ 1, jump·h ≤ speed, and the new phase lasts to the end of the step) is one that the stages see, and the
 /// error estimate with them: it is cut while such kinks are few, 20 and one more for every fifty steps, so that a
-/// run costs little more than without. Where a switch that does not matter yet would matter in a step as long as this one, and ω h > 1, the method starts anew as after a cut: the stages of a
-/// long step can all miss a force that is stiff enough to throw them out of the solid.
+/// run costs little more than without. Where a switch that does not matter yet would matter in a step as long as
+/// this one, and ω h > 1, the method starts anew as after a cut: the stages of a long step can all miss a force
+/// that is stiff enough to throw them out of the solid.
 template <class Scalar>
 class SwitchCutter final : public SwitchSink<Scalar> {
  public:
