@@ -53,11 +53,14 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     }
     compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
     compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
+    compare(arguments.velocity_tolerance != 0.0, "--atol-velocity", arguments.velocity_tolerance,
+            adaptive.absolute_velocity_tolerance);
     compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step,
             adaptive.maximum_step);
     arguments.maximum_step = adaptive.maximum_step;
     arguments.relative_tolerance = adaptive.relative_tolerance;
     arguments.absolute_tolerance = adaptive.absolute_tolerance;
+    arguments.velocity_tolerance = adaptive.absolute_velocity_tolerance;
     arguments.has_relative = arguments.has_absolute = true;
   }
   arguments.scene = from.scene_name;

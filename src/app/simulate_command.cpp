@@ -60,7 +60,8 @@ class SimulationObserver final : public Observer {
 };
 
 StepControl step_control(const SimulateArguments& arguments, const MethodInfo& info) {
-  const bool has_tolerances = arguments.has_relative || arguments.has_absolute;
+  const bool has_velocity_tolerance = arguments.velocity_tolerance != 0.0;
+  const bool has_tolerances = arguments.has_relative || arguments.has_absolute || has_velocity_tolerance;
   if (arguments.has_step && std::isfinite(arguments.maximum_step))
     throw InputError("found --step and --maximum-step, expected one of them");
   if (arguments.has_step && has_tolerances)
@@ -84,12 +85,14 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
     };
     check("--rtol", arguments.relative_tolerance);
     check("--atol", arguments.absolute_tolerance);
+    if (has_velocity_tolerance) check("--atol-velocity", arguments.velocity_tolerance);
     if (!(arguments.maximum_step > 0.0)) {
       throw InputError(
           fmt::format("--maximum-step: found {}, expected a number of seconds > 0", arguments.maximum_step));
     }
     return AdaptiveStep{.relative_tolerance = arguments.relative_tolerance,
                         .absolute_tolerance = arguments.absolute_tolerance,
+                        .absolute_velocity_tolerance = arguments.velocity_tolerance,
                         .maximum_step = arguments.maximum_step};
   }
   if (!arguments.has_step) {
@@ -292,8 +295,14 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
       command->add_option("--rtol", arguments->relative_tolerance, "Relative tolerance of an adaptive method")
           ->type_name("R");
   CLI::Option* absolute =
-      command->add_option("--atol", arguments->absolute_tolerance, "Absolute tolerance of an adaptive method")
+      command
+          ->add_option("--atol", arguments->absolute_tolerance,
+                       "Absolute tolerance of an adaptive method, of positions [m] and velocities [m/s]")
           ->type_name("A");
+  command
+      ->add_option("--atol-velocity", arguments->velocity_tolerance,
+                   "Absolute tolerance of velocities [m/s] where it is another number")
+      ->type_name("A");
   command
       ->add_option("--maximum-step", arguments->maximum_step,
                    "Longest step [s] of an adaptive method, own or foreign; default: none")

@@ -21,8 +21,12 @@ void declare(Archive& a, ControllerOptions& options) {
             {"pi", ControllerKind::proportional_integral},
             {"pid", ControllerKind::proportional_integral_derivative}})
         .doc("how steps follow from error estimates"));
-  a(choice("norm", options.norm, {{"rms", ErrorNorm::root_mean_square}, {"max", ErrorNorm::maximum}})
-        .doc("how the error vector becomes a number"));
+  a(choice("norm", options.norm,
+           {{"particle", ErrorNorm::largest_particle},
+            {"rms", ErrorNorm::root_mean_square},
+            {"max", ErrorNorm::maximum}})
+        .doc("how the error vector becomes a number; particle: the largest root mean square of a particle "
+             "(rms without springs)"));
   a(setting("safety", options.safety).between(1e-3, 1.0).doc("factor of the predicted step"));
 }
 

@@ -14,6 +14,8 @@ std::string_view to_string(StatusCode code) {
       return "step_limit";
     case StatusCode::step_too_small:
       return "step_too_small";
+    case StatusCode::no_progress:
+      return "no_progress";
     case StatusCode::newton_failed:
       return "newton_failed";
     case StatusCode::linear_solver_failed:

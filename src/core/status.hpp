@@ -12,6 +12,7 @@ enum class StatusCode {
   interrupted,           ///< the user asked to stop (SIGINT, SIGTERM)
   step_limit,            ///< more steps needed than allowed
   step_too_small,        ///< the error test or a solver forces the step below its minimum
+  no_progress,           ///< steps far shorter than anything asks for, without an end
   newton_failed,         ///< Newton's iteration did not converge
   linear_solver_failed,  ///< the true residual stayed above the tolerance
   matrix_singular,       ///< a factorisation met a zero pivot

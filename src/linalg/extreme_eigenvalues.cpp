@@ -197,14 +197,18 @@ PetscErrorCode multiply(Mat A, Vec x, Vec y) {
   PetscScalar* out = nullptr;
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArrayWrite(y, &out));
+  // An error would leave PETSc's objects behind: after a failure its products are 0, and the search ends.
+  VectorMap image(out, shell.size);
+  image.setZero();
   try {
-    shell.product(ConstVectorMap(in, shell.size), VectorMap(out, shell.size));
+    if (!shell.thrown) shell.product(ConstVectorMap(in, shell.size), image);
   } catch (...) {
     shell.thrown = std::current_exception();
+    image.setZero();
   }
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
-  return shell.thrown ? PETSC_ERR_USER : 0;
+  return 0;
 }
 
 }  // namespace
@@ -235,9 +239,9 @@ ExtremeEigenvalues extreme_eigenvalues_symmetric(Index size, const MatrixProduct
     petsc_check(MatShellSetOperation(matrix, MATOP_MULT, reinterpret_cast<void (*)()>(&multiply)));
     solve(matrix, nullptr, size, EPS_HEP, options, text, result);
   } catch (const PetscFailure& failure) {
-    if (shell.thrown) std::rethrow_exception(shell.thrown);
     result.status = status_of(failure);
   }
+  if (shell.thrown) std::rethrow_exception(shell.thrown);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/run_clock.hpp"
 #include "linalg/petsc_running.hpp"
 #include "system/worker_process.hpp"
 
@@ -62,6 +63,7 @@ class StartAndEndOfMpi {
 class Library {
  public:
   Library() {
+    const LibraryStart start;
     [[maybe_unused]] const StartAndEndOfMpi quiet;
     static char name[] = "federwerk", no_file[] = "-skip_petscrc", no_signals[] = "-no_signal_handler";
     static char* words[] = {name, no_file, no_signals, nullptr};

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/run_clock.hpp"
 #include "ode/not_applicable.hpp"
 
 namespace fw {
@@ -40,11 +40,10 @@ Solution Integrator::solve(const Ivp& ivp, const StepControl& control, Observer&
   if (const std::string why = why_not_applicable(info(), *ivp.system); !why.empty()) {
     throw NotApplicable(fmt::format("method \"{}\": {}", info().name, why));
   }
-  const auto start = std::chrono::steady_clock::now();
+  const RunClock clock;
   Solution solution = do_solve(ivp, control, observer, options);
   const double before = options.resume.empty() ? 0.0 : solution.work.seconds;
-  solution.work.seconds =
-      before + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  solution.work.seconds = before + clock.seconds();
   return solution;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "ode/second_order_system.hpp"
 
 namespace fw {
 
@@ -42,6 +43,25 @@ StepCount count_whole_steps(std::string_view method, double t0, double t1, doubl
                   step, length, method, fitting));
 }
 
+bool AdaptiveStep::has_velocity_tolerance(const OdeSystem& system) const {
+  return absolute_velocity_tolerance > 0.0 && absolute_velocity_tolerance != absolute_tolerance &&
+         system.second_order() != nullptr;
+}
+
+Vector absolute_tolerances(const AdaptiveStep& control, Index size, Index first_velocity, Index n) {
+  Vector tolerances = Vector::Constant(size, control.absolute_tolerance);
+  if (control.absolute_velocity_tolerance > 0.0) {
+    tolerances.segment(first_velocity, n).setConstant(control.absolute_velocity_tolerance);
+  }
+  return tolerances;
+}
+
+Vector absolute_tolerances(const AdaptiveStep& control, const OdeSystem& system) {
+  const SecondOrderSystem* second_order = system.second_order();
+  const Index n = second_order == nullptr ? 0 : second_order->degrees_of_freedom();
+  return absolute_tolerances(control, system.size(), n, n);
+}
+
 void check_tolerances(std::string_view method, const AdaptiveStep& control) {
   const auto require = [&](bool holds, const std::string& what) {
     if (!holds) throw InputError(fmt::format("method \"{}\": {}", method, what));
@@ -50,6 +70,9 @@ void check_tolerances(std::string_view method, const AdaptiveStep& control) {
           fmt::format("relative tolerance: found {}, expected > 0", control.relative_tolerance));
   require(std::isfinite(control.absolute_tolerance) && control.absolute_tolerance > 0.0,
           fmt::format("absolute tolerance: found {}, expected > 0", control.absolute_tolerance));
+  require(std::isfinite(control.absolute_velocity_tolerance) && control.absolute_velocity_tolerance >= 0.0,
+          fmt::format("absolute tolerance of velocities: found {}, expected > 0, or 0 for that of positions",
+                      control.absolute_velocity_tolerance));
   require(control.initial_step >= 0.0 && std::isfinite(control.initial_step),
           fmt::format("initial step: found {}, expected >= 0", control.initial_step));
   require(control.minimum_step >= 0.0 && control.maximum_step > control.minimum_step,

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <variant>
 
+#include "ode/ode_system.hpp"
+
 namespace fw {
 
 /// Constant steps, t_n = t₀ + n·h computed from the index. Where t₁ − t₀ is not a whole number of steps, a
@@ -18,11 +20,23 @@ struct FixedStep {
 struct AdaptiveStep {
   double relative_tolerance = 1e-6;
   double absolute_tolerance = 1e-9;
+  /// Of the velocities of a second-order system, in m/s where `absolute_tolerance` is in metres; 0: the same
+  /// number.
+  double absolute_velocity_tolerance = 0.0;
   double initial_step = 0.0;                                      ///< [s]; 0: chosen by the scheme
   double minimum_step = 0.0;                                      ///< [s]
   double maximum_step = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t maximum_steps = 100'000'000;
+
+  /// Whether velocities have an absolute tolerance of their own on this system.
+  bool has_velocity_tolerance(const OdeSystem& system) const;
 };
+
+/// The absolute tolerance of each of `size` components, of which those from `first_velocity` on, n of them, are
+/// velocities.
+Vector absolute_tolerances(const AdaptiveStep& control, Index size, Index first_velocity, Index n);
+/// The same of the state of a system.
+Vector absolute_tolerances(const AdaptiveStep& control, const OdeSystem& system);
 
 /// Throws InputError that names `method` and the value unless both tolerances are finite and > 0, the first
 /// step is finite and >= 0, 0 <= minimum < maximum, and the first step, if given, is at least the minimum.

@@ -179,6 +179,7 @@ StepControl checked(const MethodInfo& info, const ToleranceScaling& scaling, con
       std::min(tolerances.relative_tolerance,
                std::max(tolerances.relative_tolerance * scaling.factor, scaling.smallest_relative));
   tolerances.absolute_tolerance *= scaling.factor;
+  tolerances.absolute_velocity_tolerance *= scaling.factor;
   return tolerances;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// The first line of the file; its number is the version of the format.
 constexpr std::string_view family = "federwerk checkpoint ";
-constexpr std::string_view first_line = "federwerk checkpoint 1\n";
+constexpr std::string_view first_line = "federwerk checkpoint 2\n";
 /// A number whose bytes read differently backwards.
 constexpr double byte_order = 1.0;
 
@@ -34,6 +34,7 @@ void serialise(StateArchive& archive, StepControl& control) {
   auto& adaptive = std::get<AdaptiveStep>(control);
   archive.visit("relative tolerance", adaptive.relative_tolerance);
   archive.visit("absolute tolerance", adaptive.absolute_tolerance);
+  archive.visit("absolute tolerance of velocities", adaptive.absolute_velocity_tolerance);
   archive.visit("initial step", adaptive.initial_step);
   archive.visit("minimum step", adaptive.minimum_step);
   archive.visit("maximum step", adaptive.maximum_step);

@@ -160,7 +160,7 @@ TEST_F(CheckpointCommand, RefusesAFileThatIsDamagedForeignOrMissing) {
   expect(good.substr(0, good.size() - 5),
          "checkpoint \"bad.chk\" is truncated: it has no SHA-256 at its end");
   expect(chain, "\"bad.chk\" is no checkpoint of federwerk");
-  expect("federwerk checkpoint 2\n" + good.substr(23), "found version \"2\" of the format, expected 1");
+  expect("federwerk checkpoint 3\n" + good.substr(23), "found version \"3\" of the format, expected 2");
   EXPECT_THAT(simulate({"--continue", "none.chk", "-o", "b.h5"}).err, HasSubstr("cannot read \"none.chk\""));
   // Nothing is lost to a mistyped name.
   const ProcessResult result = simulate({"s.toml", "--method", "rk4", "--step", "0.01", "--t-end", "1", "-o",

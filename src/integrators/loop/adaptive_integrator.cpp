@@ -20,19 +20,25 @@ constexpr double stretch_to_end = 1.01;
 constexpr double smallest_step_in_ulps = 16.0;
 constexpr int most_failures_in_a_row = 100;
 
+/// Without a tolerance of velocities where the system has none.
+AdaptiveStep for_system(AdaptiveStep control, const OdeSystem& system) {
+  if (!control.has_velocity_tolerance(system)) control.absolute_velocity_tolerance = 0.0;
+  return control;
+}
+
 /// Steps chosen by the error estimate.
 class AdaptiveSteps final : public StepSource {
  public:
   AdaptiveSteps(const MethodInfo& info, const ControllerOptions& options,
                 const AdaptiveStepperFactory& make_stepper, const Ivp& ivp, const AdaptiveStep& control,
                 bool is_resumed, Work& work)
-      : options_(options),
+      : norm_(norm_on(options.norm, *ivp.system)),
         stepper_(make_stepper(ivp, work)),
         has_dense_output_(info.dense_output != DenseOutput::cubic_hermite),
         inside_(*ivp.system, side_step_nodes(info),
                 side_step_of([&make_stepper, &ivp, &work] { return make_stepper(ivp, work); }), work,
                 dynamic_cast<ContinuousExtension*>(stepper_.get())),
-        control_(control),
+        control_(for_system(control, *ivp.system)),
         t1_(ivp.t1),
         work_(work),
         controller_(options, std::min(info.order, info.embedded_order) + 1),
@@ -40,8 +46,7 @@ class AdaptiveSteps final : public StepSource {
         h_(is_resumed ? 0.0
            : control.initial_step > 0.0
                ? std::min({control.initial_step, control.maximum_step, ivp.t1 - ivp.t0})
-               : std::max(initial_step(ivp, control, options.norm, info.order, work), control.minimum_step)) {
-  }
+               : std::max(initial_step(ivp, control_, norm_, info.order, work), control.minimum_step)) {}
 
   Status propose(LoopStep& step) override {
     const double t = step.start;
@@ -118,6 +123,7 @@ class AdaptiveSteps final : public StepSource {
   void serialise(StateArchive& archive) override {
     archive.require_equal("relative tolerance", control_.relative_tolerance);
     archive.require_equal("absolute tolerance", control_.absolute_tolerance);
+    archive.require_equal("absolute tolerance of velocities", control_.absolute_velocity_tolerance);
     archive.require_equal("minimum step", control_.minimum_step);
     archive.require_equal("maximum step", control_.maximum_step);
     archive.visit("step to come", h_);
@@ -136,16 +142,16 @@ class AdaptiveSteps final : public StepSource {
       last_failure_ = status.describe();
       return std::numeric_limits<double>::quiet_NaN();
     }
-    const double estimate = error_in_tolerances(options_.norm, control_, error_, y, y_new);
+    const double estimate = error_in_tolerances(norm_, control_, error_, y, y_new);
     if (!std::isfinite(estimate)) last_failure_ = "the error estimate is not finite";
     return estimate;
   }
 
-  const ControllerOptions& options_;
+  ErrorNorm norm_;
   std::unique_ptr<AdaptiveStepper> stepper_;
   bool has_dense_output_;
   SideSteps inside_;
-  const AdaptiveStep& control_;
+  AdaptiveStep control_;
   double t1_;
   Work& work_;
   StepSizeController controller_;

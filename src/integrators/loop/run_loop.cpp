@@ -2,21 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/run_clock.hpp"
 #include "core/work_counters.hpp"
 #include "integrators/loop/hermite_interpolant.hpp"
+#include "integrators/loop/progress_watch.hpp"
 #include "integrators/loop/run_checks.hpp"
 #include "integrators/loop/switch_guard.hpp"
 
 namespace fw::integrators {
 
 namespace {
-
-/// Some libraries only warn of steps below the rounding of t and would go on with them for ever.
-constexpr std::uint64_t most_steps_without_progress = 20;
 
 void serialise(StateArchive& archive, Work& work) {
   for (const WorkCounter& counter : work_counters) archive.visit(counter.words, work.*counter.count);
@@ -40,6 +38,7 @@ class Loop {
     }
     const std::unique_ptr<StepSource> source = make_source(solution_.work);
     guard_.emplace(ivp_, *source, options_);
+    progress_.emplace(info_, ivp_, source->tolerances());
     if (!options_.resume.empty()) load(*source);
     if (options_.checkpoints != nullptr) save(*source);  // refused now rather than after an hour
     solution_.status = advance(*source);
@@ -76,7 +75,7 @@ class Loop {
       if (!step.is_accepted) continue;
       if (step.is_last) step.end = ivp_.t1;
       if (Status status = check_state(y_new, step.end, step.index); !status.ok()) return status;
-      if (Status status = check_progress(step); !status.ok()) return status;
+      if (Status status = progress_->judge(step, y, y_new); !status.ok()) return status;
       const SwitchGuard::Verdict verdict = guard_->judge(step, y, y_new);
       if (verdict == SwitchGuard::Verdict::again) {
         ++solution_.work.rejected_steps;
@@ -114,13 +113,6 @@ class Loop {
     }
   }
 
-  Status check_progress(const LoopStep& step) {
-    steps_without_progress_ = step.end > step.start ? 0 : steps_without_progress_ + 1;
-    if (steps_without_progress_ < most_steps_without_progress) return {};
-    return {StatusCode::step_too_small,
-            fmt::format("at t = {:.6g} the step fell below the rounding of t", step.end)};
-  }
-
   Status chatter() const {
     return {StatusCode::step_too_small,
             fmt::format("at t = {:.6g} the right-hand side switches without end, last at {}", solution_.time,
@@ -130,7 +122,7 @@ class Loop {
   void save(StepSource& source) {
     writer_.clear();
     const double seconds_before = solution_.work.seconds;  // of the run that this one continues
-    solution_.work.seconds += std::chrono::duration<double>(Clock::now() - start_).count();
+    solution_.work.seconds += clock_.seconds();
     serialise(writer_, source);
     solution_.work.seconds = seconds_before;
   }
@@ -148,23 +140,22 @@ class Loop {
     archive.visit("time", solution_.time);
     archive.visit("state", solution_.state);
     archive.visit("steps", steps_);
-    archive.visit("steps without progress", steps_without_progress_);
+    progress_->serialise(archive);
     guard_->serialise(archive);
     source.serialise(archive);
     // Last: what a source evaluates to put itself back is not counted.
     integrators::serialise(archive, solution_.work);
   }
 
-  using Clock = std::chrono::steady_clock;
-
-  const Clock::time_point start_ = Clock::now();
+  const RunClock clock_;
   const MethodInfo& info_;
   const Ivp& ivp_;
   Observer& observer_;
   const SolveOptions& options_;
   std::uint64_t maximum_steps_;
-  std::uint64_t steps_ = 0, steps_without_progress_ = 0;
+  std::uint64_t steps_ = 0;
   std::optional<SwitchGuard> guard_;
+  std::optional<ProgressWatch> progress_;
   Solution solution_;
   StateWriter writer_;
 };

@@ -2,21 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "integrators/loop/particle_norm.hpp"
 
 namespace fw::integrators {
+
+ErrorNorm norm_on(ErrorNorm norm, const OdeSystem& system) {
+  return norm == ErrorNorm::largest_particle && !has_particles(system) ? ErrorNorm::root_mean_square : norm;
+}
+
+namespace {
+
+template <class Scaled>
+double norm_of(ErrorNorm norm, const Scaled& scaled) {
+  if (norm == ErrorNorm::largest_particle) {
+    return largest_particle_norm(scaled.size(), [&](Index i) { return scaled(i); });
+  }
+  const double square = scaled.square().sum();
+  if (norm == ErrorNorm::root_mean_square) return std::sqrt(square / static_cast<double>(scaled.size()));
+  // Eigen's maximum may pass over NaN, the sum of squares does not.
+  return std::isfinite(square) ? scaled.abs().maxCoeff() : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
 
 double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error,
                            ConstVectorRef y, ConstVectorRef y_new) {
   // One pass without temporaries: this runs once per step over the whole state.
-  const auto scaled =
-      error.array() / (tolerances.absolute_tolerance +
-                       tolerances.relative_tolerance * y.array().abs().max(y_new.array().abs()));
-  if (norm == ErrorNorm::maximum) {
-    // Eigen's maximum may pass over NaN, the sum of squares does not.
-    return std::isfinite(scaled.square().sum()) ? scaled.abs().maxCoeff()
-                                                : std::numeric_limits<double>::quiet_NaN();
+  const auto relative = tolerances.relative_tolerance * y.array().abs().max(y_new.array().abs());
+  if (tolerances.absolute_velocity_tolerance == 0.0) {
+    return norm_of(norm, error.array() / (tolerances.absolute_tolerance + relative));
   }
-  return std::sqrt(scaled.square().sum() / static_cast<double>(error.size()));
+  const Index half = error.size() / 2;
+  const auto absolute = Eigen::ArrayXd::NullaryExpr(error.size(), [&](Index i) {
+    return i < half ? tolerances.absolute_tolerance : tolerances.absolute_velocity_tolerance;
+  });
+  return norm_of(norm, error.array() / (absolute + relative));
 }
 
 namespace {

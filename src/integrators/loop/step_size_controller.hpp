@@ -2,6 +2,7 @@
 
 #include "core/state_archive.hpp"
 #include "core/types.hpp"
+#include "ode/ode_system.hpp"
 #include "ode/step_control.hpp"
 
 namespace fw::integrators {
@@ -17,19 +18,24 @@ enum class ControllerKind {
 
 /// How the error vector becomes one number, with the scale sc_i = atol + rtol·max(|y_i|, |y'_i|).
 enum class ErrorNorm {
-  root_mean_square,  ///< √(Σ (e_i/sc_i)²/N)
+  root_mean_square,  ///< √(Σ (e_i/sc_i)²/N): the motion of few among many counts little
   maximum,           ///< max |e_i|/sc_i
+  largest_particle,  ///< `largest_particle_norm` on mass-spring systems, the root mean square on others
 };
+
+/// `root_mean_square` in place of `largest_particle` where the system is none of springs.
+ErrorNorm norm_on(ErrorNorm norm, const OdeSystem& system);
 
 struct ControllerOptions {
   ControllerKind kind = ControllerKind::proportional_integral;
-  ErrorNorm norm = ErrorNorm::root_mean_square;
+  ErrorNorm norm = ErrorNorm::largest_particle;
   double safety = 0.9;
   double smallest_factor = 0.2;  ///< of one change of the step
   double largest_factor = 5.0;
 };
 
-/// The norm of the error in units of the tolerance: a step with a value ≤ 1 is accepted.
+/// The norm of the error in units of the tolerance: a step with a value ≤ 1 is accepted. `norm` is one that
+/// `norm_on` has given; a tolerance of velocities that is not 0 is that of the second half of the state.
 double error_in_tolerances(ErrorNorm norm, const AdaptiveStep& tolerances, ConstVectorRef error,
                            ConstVectorRef y, ConstVectorRef y_new);
 

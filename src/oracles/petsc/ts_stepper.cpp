@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "integrators/loop/initial_step.hpp"
+#include "integrators/loop/particle_norm.hpp"
 
 namespace fw::oracles {
 
@@ -70,6 +71,26 @@ void refuse_options(const std::string& text, bool is_adaptive) {
   }
 }
 
+/// The method's options. The error of a particle must not vanish among many that rest: where the user has not
+/// chosen, its norm on particles is the maximum, the only one of PETSc's that does not average over all.
+std::string options_text(const TsMethod& method, const OdeSystem& system, bool is_adaptive) {
+  constexpr std::string_view norm = "-ts_adapt_wnormtype";
+  const bool is_given = method.petsc_options.find(norm) != std::string::npos;
+  if (!is_adaptive || is_given || !integrators::has_particles(system)) return method.petsc_options;
+  return fmt::format("{}{}{} infinity", method.petsc_options, method.petsc_options.empty() ? "" : " ", norm);
+}
+
+linalg::PetscVec absolute_vector(const AdaptiveStep& tolerances, const OdeSystem& system) {
+  const Vector values = absolute_tolerances(tolerances, system);
+  linalg::PetscVec vector;
+  PetscScalar* entries = nullptr;
+  petsc_check(VecCreateSeq(PETSC_COMM_SELF, static_cast<PetscInt>(values.size()), vector.out()));
+  petsc_check(VecGetArrayWrite(vector, &entries));
+  VectorMap(entries, values.size()) = values;
+  petsc_check(VecRestoreArrayWrite(vector, &entries));
+  return vector;
+}
+
 }  // namespace
 
 TsStepper::TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& control, Work& work)
@@ -82,7 +103,7 @@ TsStepper::TsStepper(const TsMethod& method, const Ivp& ivp, const StepControl& 
       ivp_(ivp),
       control_(control),
       work_(work),
-      text_(method.petsc_options) {
+      text_(options_text(method, *ivp.system, is_adaptive_)) {
   create();
 }
 
@@ -90,11 +111,11 @@ void TsStepper::create() {
   stepper_.reset();  // it has pointers to the equations
   equations_ = std::make_unique<TsEquations>(ivp_, method_.form, work_);
   double first_step = ivp_.t1 - ivp_.t0;
+  const auto norm = integrators::norm_on(integrators::ErrorNorm::largest_particle, *ivp_.system);
   if (const auto* tolerances = std::get_if<AdaptiveStep>(&control_)) {
     first_step = tolerances->initial_step > 0.0
                      ? tolerances->initial_step
-                     : integrators::initial_step(ivp_, *tolerances, integrators::ErrorNorm::root_mean_square,
-                                                 method_.order, work_);
+                     : integrators::initial_step(ivp_, *tolerances, norm, method_.order, work_);
   }
   try {
     const PetscSession session(&text_);
@@ -110,7 +131,12 @@ void TsStepper::create() {
     TSAdapt adapt = nullptr;
     petsc_check(TSGetAdapt(stepper_, &adapt));
     if (const auto* tolerances = std::get_if<AdaptiveStep>(&control_)) {
-      petsc_check(TSSetTolerances(stepper_, tolerances->absolute_tolerance, nullptr,
+      linalg::PetscVec absolute;
+      // The form of second order estimates the error of positions alone.
+      const bool has_velocities = method_.form != TsForm::second_order;
+      if (has_velocities && tolerances->has_velocity_tolerance(*ivp_.system))
+        absolute = absolute_vector(*tolerances, *ivp_.system);
+      petsc_check(TSSetTolerances(stepper_, tolerances->absolute_tolerance, absolute,
                                   tolerances->relative_tolerance, nullptr));
       petsc_check(TSAdaptSetType(adapt, TSADAPTBASIC));
       petsc_check(

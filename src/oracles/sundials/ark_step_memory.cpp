@@ -9,6 +9,7 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
                              std::unique_ptr<RightHandPart> implicit_part, const ArkodeTables& tables,
                              RunReport& report, Work& work, SUNContext context)
     : size_(static_cast<Index>(N_VGetLength(y0))),
+      context_(context),
       explicit_part_(std::move(explicit_part)),
       implicit_part_(std::move(implicit_part)),
       report_(report),
@@ -33,10 +34,12 @@ ArkStepMemory::ArkStepMemory(double t0, N_Vector y0, std::unique_ptr<RightHandPa
   }
 }
 
-void ArkStepMemory::choose_steps(const AdaptiveStep& tolerances, const StageAccuracy& accuracy) {
+void ArkStepMemory::choose_steps(const AdaptiveStep& tolerances, Vector absolute,
+                                 const StageAccuracy& accuracy) {
   void* memory = memory_.get();
-  require(ARKStepSStolerances(memory, tolerances.relative_tolerance, tolerances.absolute_tolerance),
-          "ARKStepSStolerances");
+  const VectorPointer absolute_vector = wrap_eigen_vector(absolute, context_);
+  require(ARKStepSVtolerances(memory, tolerances.relative_tolerance, absolute_vector.get()),
+          "ARKStepSVtolerances");
   if (tolerances.initial_step > 0.0) {
     require(ARKStepSetInitStep(memory, tolerances.initial_step), "ARKStepSetInitStep");
   }

@@ -30,8 +30,8 @@ class ArkStepMemory {
 
   void* get() const { return memory_.get(); }
 
-  /// Steps chosen by ARKODE from these tolerances.
-  void choose_steps(const AdaptiveStep& tolerances, const StageAccuracy& accuracy);
+  /// Steps chosen by ARKODE from these tolerances; `absolute` are those of each component.
+  void choose_steps(const AdaptiveStep& tolerances, Vector absolute, const StageAccuracy& accuracy);
   /// Constant steps (the caller sets them): stages are solved to rounding, `scale` being the size of the
   /// state.
   void take_constant_steps(double scale, const StageAccuracy& accuracy);
@@ -61,6 +61,7 @@ class ArkStepMemory {
   int evaluate(RightHandPart& part, double t, N_Vector y, N_Vector dydt);
 
   Index size_;
+  SUNContext context_;
   std::unique_ptr<RightHandPart> explicit_part_, implicit_part_;
   RunReport& report_;
   Work& work_;

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "integrators/loop/particle_norm.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/ark_step_memory.hpp"
+#include "oracles/sundials/eigen_vector.hpp"
 
 namespace fw::oracles {
 
@@ -29,11 +31,13 @@ class ArkodeStepper final : public ForeignStepper {
         check_stall_(ivp.t0),
         state_(ivp.y0),
         context_(make_context()),
-        state_vector_(wrap_eigen_vector(state_, context_.get())),
+        state_vector_(wrap_state(state_, integrators::has_particles(*ivp.system), VectorOperations::eigen,
+                                 context_.get())),
         ark_(ivp.t0, state_vector_.get(), explicit_part(tables, *ivp.system),
              implicit_part(tables, *ivp.system), tables, report_, work, context_.get()) {
     if (is_adaptive_) {
-      ark_.choose_steps(std::get<AdaptiveStep>(control), accuracy_);
+      const auto& tolerances = std::get<AdaptiveStep>(control);
+      ark_.choose_steps(tolerances, absolute_tolerances(tolerances, *ivp.system), accuracy_);
     } else {
       ark_.take_constant_steps(ivp.y0.lpNorm<Eigen::Infinity>(), accuracy_);
     }

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "integrators/loop/particle_norm.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/ark_step_memory.hpp"
+#include "oracles/sundials/eigen_vector.hpp"
 
 namespace fw::oracles {
 
@@ -52,7 +54,8 @@ class MriStepper final : public ForeignStepper {
         state_(ivp.y0),
         slow_{make_soft_right_hand_part(*ivp.system->second_order()), ivp.y0.size(), report_, work},
         context_(make_context()),
-        state_vector_(wrap_eigen_vector(state_, context_.get())),
+        state_vector_(wrap_state(state_, integrators::has_particles(*ivp.system), VectorOperations::eigen,
+                                 context_.get())),
         inner_(ivp.t0, state_vector_.get(), fast_part(ivp, !options.inner_is_implicit),
                fast_part(ivp, options.inner_is_implicit), tables, report_, work, context_.get()),
         inner_stepper_(inner_stepper(inner_.get())),
@@ -104,8 +107,8 @@ class MriStepper final : public ForeignStepper {
     if (inner_steps_ > 0) {
       inner_.take_constant_steps(scale, {});
     } else {
-      inner_.choose_steps(
-          {.relative_tolerance = inner_tolerance_, .absolute_tolerance = inner_tolerance_ * scale}, {});
+      inner_.choose_steps({.relative_tolerance = inner_tolerance_},
+                          Vector::Constant(y.size(), inner_tolerance_ * scale), {});
     }
   }
   static std::unique_ptr<RightHandPart> fast_part(const Ivp& ivp, bool is_wanted) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "integrators/loop/particle_norm.hpp"
 #include "oracles/sundials/eigen_vector.hpp"
 
 namespace fw::oracles::detail {
@@ -67,15 +68,17 @@ void CvodeSession::MemoryDeleter::operator()(void* memory) const {
 CvodeSession::CvodeSession(CvodeFormula formula, const CvodeOptions& options, const Ivp& ivp,
                            const AdaptiveStep& tolerances, Work& work)
     : system_(*ivp.system), work_(work), state_(ivp.y0), stop_time_(ivp.t1), context_(make_context()) {
-  y_ = wrap_vector(state_, options.vector, context_.get());
+  y_ = wrap_state(state_, integrators::has_particles(system_), options.vector, context_.get());
   dense_ = new_vector(state_.size(), options.vector, context_.get());
   memory_.reset(CVodeCreate(formula == CvodeFormula::bdf ? CV_BDF : CV_ADAMS, context_.get()));
   if (memory_ == nullptr) throw SystemError("SUNDIALS: CVodeCreate returned nothing");
   require(CVodeSetErrHandlerFn(memory(), error_handler, this), "CVodeSetErrHandlerFn");
   require(CVodeInit(memory(), rhs, ivp.t0, y_.get()), "CVodeInit");
   require(CVodeSetUserData(memory(), this), "CVodeSetUserData");
-  require(CVodeSStolerances(memory(), tolerances.relative_tolerance, tolerances.absolute_tolerance),
-          "CVodeSStolerances");
+  Vector absolute = absolute_tolerances(tolerances, system_);
+  const VectorPointer absolute_vector = wrap_vector(absolute, options.vector, context_.get());
+  require(CVodeSVtolerances(memory(), tolerances.relative_tolerance, absolute_vector.get()),
+          "CVodeSVtolerances");
   if (iteration_of(formula, options) == CvodeIteration::newton) {
     attach_linear_solver(options);
   } else {

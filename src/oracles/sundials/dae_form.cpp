@@ -1,5 +1,6 @@
 #include "oracles/sundials/dae_form.hpp"
 
+#include "integrators/loop/particle_norm.hpp"
 #include "ode/first_order_jacobian.hpp"
 #include "ode/pattern_watch.hpp"
 #include "sparse/sparse_slots.hpp"
@@ -45,6 +46,11 @@ class SecondOrderForm final : public DaeForm {
         diagonal_(sparse::diagonal_slots(stiffness_)) {}
 
   Index size() const override { return 2 * system_.degrees_of_freedom(); }
+  Vector tolerances(const AdaptiveStep& control) const override {
+    const Index n = system_.degrees_of_freedom();
+    return absolute_tolerances(control, 2 * n, n, n);
+  }
+  bool is_of_particles() const override { return integrators::has_particles(system_); }
   void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) override {
     const Index n = system_.degrees_of_freedom();
     residual.head(n) = dydt.head(n) - y.tail(n);

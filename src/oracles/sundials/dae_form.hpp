@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "ode/ode_system.hpp"
+#include "ode/step_control.hpp"
 
 namespace fw::oracles::detail {
 
@@ -13,6 +14,14 @@ class DaeForm {
 
   /// N, the number of unknowns.
   virtual Index size() const = 0;
+
+  /// Whether y is the state [q; v] of particles, nothing else.
+  virtual bool is_of_particles() const { return false; }
+
+  /// Of each unknown.
+  virtual Vector tolerances(const AdaptiveStep& control) const {
+    return Vector::Constant(size(), control.absolute_tolerance);
+  }
 
   /// residual = F(t, y, ẏ).
   virtual void residual(double t, ConstVectorRef y, ConstVectorRef dydt, VectorRef residual) = 0;

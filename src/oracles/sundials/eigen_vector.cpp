@@ -81,12 +81,20 @@ N_Vector make(sunindextype length, SUNContext context) {
   return vector;
 }
 
+/// The norms of `of` for `vector`, which may be null.
+N_Vector with_norms(N_Vector vector, N_Vector of) {
+  if (vector == nullptr) return nullptr;
+  vector->ops->nvwrmsnorm = of->ops->nvwrmsnorm;
+  vector->ops->nvwrmsnormmask = of->ops->nvwrmsnormmask;
+  return vector;
+}
+
 N_Vector clone_empty(N_Vector vector) {
-  return make_empty(content(vector)->length, vector->sunctx);
+  return with_norms(make_empty(content(vector)->length, vector->sunctx), vector);
 }
 
 N_Vector clone(N_Vector vector) {
-  return make(content(vector)->length, vector->sunctx);
+  return with_norms(make(content(vector)->length, vector->sunctx), vector);
 }
 
 void space(N_Vector vector, sunindextype* reals, sunindextype* integers) {
@@ -160,6 +168,13 @@ VectorPointer new_vector(Index size, VectorOperations operations, SUNContext con
 VectorPointer wrap_vector(VectorRef entries, VectorOperations operations, SUNContext context) {
   if (operations == VectorOperations::eigen) return wrap_eigen_vector(entries, context);
   return own<VectorPointer>(N_VMake_Serial(entries.size(), entries.data(), context), "N_VMake_Serial");
+}
+
+VectorPointer wrap_state(VectorRef entries, bool is_of_particles, VectorOperations operations,
+                         SUNContext context) {
+  VectorPointer state = wrap_vector(entries, operations, context);
+  if (operations == VectorOperations::eigen && is_of_particles) set_norm_of_particles(*state->ops);
+  return state;
 }
 
 }  // namespace fw::oracles::detail

@@ -22,7 +22,11 @@ VectorPointer wrap_eigen_vector(VectorRef entries, SUNContext context);
 
 /// A new vector of either kind.
 VectorPointer new_vector(Index size, VectorOperations operations, SUNContext context);
-/// A vector of either kind over `entries`, without a copy.
+/// The state of a system over `entries`, without a copy, as a vector of either kind. N_VWrmsNorm of one of ours
+/// and of all cloned from it is `integrators::largest_particle_norm` where it is [q; v] of particles.
+VectorPointer wrap_state(VectorRef entries, bool is_of_particles, VectorOperations operations,
+                         SUNContext context);
+/// The same of a vector of either kind that is no state.
 VectorPointer wrap_vector(VectorRef entries, VectorOperations operations, SUNContext context);
 
 }  // namespace fw::oracles::detail

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/types.hpp"
+#include "integrators/loop/particle_norm.hpp"
 #include "oracles/sundials/eigen_vector_operations.hpp"
 
 namespace fw::oracles::detail {
@@ -92,6 +93,17 @@ double wrms_norm_mask(N_Vector x, N_Vector w, N_Vector id) {
   return root_mean_square(weighted_square_sum_mask(x, w, id), x);
 }
 
+double particle_norm(N_Vector x, N_Vector w) {
+  const double *values = NV_DATA_S(x), *weights = NV_DATA_S(w);
+  return integrators::largest_particle_norm(NV_LENGTH_S(x), [&](Index i) { return values[i] * weights[i]; });
+}
+
+double particle_norm_mask(N_Vector x, N_Vector w, N_Vector id) {
+  const double *values = NV_DATA_S(x), *weights = NV_DATA_S(w), *mask = NV_DATA_S(id);
+  return integrators::largest_particle_norm(
+      NV_LENGTH_S(x), [&](Index i) { return mask[i] > 0.0 ? values[i] * weights[i] : 0.0; });
+}
+
 double weighted_l2_norm(N_Vector x, N_Vector w) {
   return std::sqrt(weighted_square_sum(x, w));
 }
@@ -145,6 +157,11 @@ double minimum_quotient(N_Vector numerator, N_Vector denominator) {
 }
 
 }  // namespace
+
+void set_norm_of_particles(_generic_N_Vector_Ops& table) {
+  table.nvwrmsnorm = particle_norm;
+  table.nvwrmsnormmask = particle_norm_mask;
+}
 
 void set_standard_operations(_generic_N_Vector_Ops& table) {
   table.nvlinearsum = linear_sum;

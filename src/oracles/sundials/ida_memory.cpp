@@ -13,7 +13,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
       start_(t0),
       stop_time_(t1),
       relative_tolerance_(tolerances.relative_tolerance),
-      absolute_tolerance_(tolerances.absolute_tolerance),
+      absolute_tolerances_(form_->tolerances(tolerances)),
       work_(work),
       check_stall_(t0),
       state_(y0),
@@ -21,7 +21,7 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
       dense_(y0.size()),
       kinds_(Vector::Ones(y0.size())),
       context_(make_context()),
-      state_vector_(wrap_eigen_vector(state_, context_.get())),
+      state_vector_(wrap_state(state_, form_->is_of_particles(), VectorOperations::eigen, context_.get())),
       slope_vector_(wrap_eigen_vector(slope_, context_.get())),
       dense_vector_(wrap_eigen_vector(dense_, context_.get())),
       kinds_vector_(wrap_eigen_vector(kinds_, context_.get())),
@@ -31,8 +31,8 @@ IdaMemory::IdaMemory(std::unique_ptr<DaeForm> form, double t0, double t1, const 
   require(IDASetErrHandlerFn(memory, keep_message, &report_), "IDASetErrHandlerFn");
   require(IDAInit(memory, residual_function, t0, state_vector_.get(), slope_vector_.get()), "IDAInit");
   require(IDASetUserData(memory, this), "IDASetUserData");
-  require(IDASStolerances(memory, tolerances.relative_tolerance, tolerances.absolute_tolerance),
-          "IDASStolerances");
+  const VectorPointer absolute_vector = wrap_eigen_vector(absolute_tolerances_, context_.get());
+  require(IDASVtolerances(memory, tolerances.relative_tolerance, absolute_vector.get()), "IDASVtolerances");
   require(IDASetLinearSolver(memory, linear_solver_.solver(), linear_solver_.matrix()), "IDASetLinearSolver");
   require(IDASetJacFn(memory, jacobian_function), "IDASetJacFn");
   require(IDASetMaxNumSteps(memory, -1), "IDASetMaxNumSteps");
@@ -67,8 +67,8 @@ int IdaMemory::error_weights(N_Vector y, N_Vector weights, void* self) {
     const Index n = run.form_->size();
     VectorMap weight = mutable_view(weights, n);
     weight = run.relative_tolerance_ * view(y, n).cwiseAbs();
-    weight.array() += run.absolute_tolerance_;
-    if (step > 0.0) weight += (run.absolute_tolerance_ / step) * run.scale_per_step_;
+    weight += run.absolute_tolerances_;
+    if (step > 0.0) weight += run.absolute_tolerances_.cwiseProduct(run.scale_per_step_) / step;
     weight = weight.cwiseInverse();
     return weight.allFinite() ? 0 : -1;
   });

@@ -52,7 +52,8 @@ class IdaMemory {
   Status failure(int flag, double t) const;
 
   std::unique_ptr<DaeForm> form_;
-  double start_, stop_time_, relative_tolerance_, absolute_tolerance_;
+  double start_, stop_time_, relative_tolerance_;
+  Vector absolute_tolerances_;  ///< of each unknown
   Vector scale_per_step_;
   Work& work_;
   RunReport report_;

@@ -4,7 +4,6 @@
 #include <kinsol/kinsol.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/run_clock.hpp"
 #include "oracles/sundials/callback_guard.hpp"
 #include "oracles/sundials/eigen_vector.hpp"
 #include "oracles/sundials/sparse_direct_solver.hpp"
@@ -209,13 +209,13 @@ StaticEquilibrium search_equilibrium(Search& search, ConstVectorRef start) {
 StaticEquilibrium find_static_equilibrium(const SecondOrderSystem& system, ConstVectorRef start, double time,
                                           const EquilibriumOptions& options) {
   check(system, start, options);
-  const auto begin = std::chrono::steady_clock::now();
+  const RunClock clock;
   double extent = 0.0;
   if (start.size() > 0) extent = start.maxCoeff() - start.minCoeff();
   Search search{system, time, options, extent > 0.0 ? extent : 1.0};
   StaticEquilibrium result = search_equilibrium(search, start);
   result.work = search.work;
-  result.work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.work.seconds = clock.seconds();
   return result;
 }
 

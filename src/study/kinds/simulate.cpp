@@ -197,7 +197,7 @@ void declare(Archive& a, FieldSpec& field) {
 /// Tolerances of methods that choose their own steps.
 struct Tolerances {
   double relative = 1e-8, absolute = 1e-10;
-  std::optional<double> maximum_step;
+  std::optional<double> absolute_velocity, maximum_step;
 };
 
 void declare(Archive& a, Tolerances& tolerances) {
@@ -206,6 +206,10 @@ void declare(Archive& a, Tolerances& tolerances) {
         .positive()
         .doc("of methods that choose their own steps"));
   a(setting("absolute", tolerances.absolute).unit("SI").positive().doc("likewise"));
+  a(setting("absolute_velocity", tolerances.absolute_velocity)
+        .unit("m/s")
+        .positive()
+        .doc("absolute tolerance of velocities where it is another number"));
   a(setting("maximum_step", tolerances.maximum_step)
         .unit("s")
         .positive()
@@ -284,9 +288,13 @@ void plan_simulate(const SimulateSpec& study, const StudyInput& input, Plan& pla
   AdaptiveStep adaptive{.relative_tolerance = study.tolerances.relative,
                         .absolute_tolerance = study.tolerances.absolute};
   std::string identity_of_limit;  // none: the identity that the case had before there was one
+  if (study.tolerances.absolute_velocity) {
+    adaptive.absolute_velocity_tolerance = *study.tolerances.absolute_velocity;
+    identity_of_limit = fmt::format("absolute velocity = {}\n", adaptive.absolute_velocity_tolerance);
+  }
   if (study.tolerances.maximum_step) {
     adaptive.maximum_step = *study.tolerances.maximum_step;
-    identity_of_limit = fmt::format("maximum step = {}\n", adaptive.maximum_step);
+    identity_of_limit += fmt::format("maximum step = {}\n", adaptive.maximum_step);
   }
   std::optional<std::uint64_t> frames;
   if (study.frames > 0) frames = static_cast<std::uint64_t>(study.frames);
