@@ -133,10 +133,13 @@ class OdeivStepper final : public ForeignStepper {
     absolute_ = absolute;
     given_step_ = is_adaptive_ ? adaptive->initial_step : std::get<FixedStep>(control).step;
     start(ivp.t0, ivp.y0);
-    Vector scales = Vector::Ones(n);  // of the absolute tolerance
-    if (is_adaptive_) scales = absolute_tolerances(*adaptive, system_) / absolute;
-    driver_.reset(gsl_odeiv2_driver_alloc_scaled_new(&gsl_system_, *stepper.type, step_, absolute, relative,
-                                                     1.0, 0.0, scales.data()));
+    if (is_adaptive_ && adaptive->has_velocity_tolerance(system_)) {
+      const Vector scales = absolute_tolerances(*adaptive, system_) / absolute;
+      driver_.reset(gsl_odeiv2_driver_alloc_scaled_new(&gsl_system_, *stepper.type, step_, absolute, relative,
+                                                       1.0, 0.0, scales.data()));
+    } else {
+      driver_.reset(gsl_odeiv2_driver_alloc_y_new(&gsl_system_, *stepper.type, step_, absolute, relative));
+    }
     if (!driver_) throw SystemError(fmt::format("GSL cannot make its stepper: {}", last_message));
   }
 
