@@ -9,6 +9,7 @@ import plot_style  # first: it finds a Python with the libraries
 import numpy
 import plot_construction
 import plot_oscillation
+import plot_simulated_energy
 import plot_slope_field
 import plot_spiral
 import plot_vector_field
@@ -17,13 +18,14 @@ from simulated_cases import read_field
 
 def draw_simulated(result):
     """For a scalar equation the construction of steps if the file has it, else curves over time; for two unknowns the
-    field at several times if the file has it, the motion of a mass, or paths in the plane; nothing for more."""
+    field at several times if the file has it, the motion of a mass, or paths in the plane; for more the energies."""
     cases = [group for group in result.cases().values() if "state" in group]
     sizes = {group["state"].shape[1] if group["state"].ndim > 1 else 1 for group in cases}
     if sizes == {1}:
         return plot_construction.draw if all("construction_slope" in group for group in cases) else plot_slope_field.draw
     if sizes != {2}:
-        return None
+        has_energies = cases and all("total_energy" in group for group in cases)
+        return plot_simulated_energy.draw if has_energies else None
     field = read_field(result)
     if field is not None and numpy.unique(field["t"]).size > 1:
         return plot_vector_field.draw

@@ -14,6 +14,9 @@ def read_case(result, group):
     case = {name: result.fact(name, group) for name in ("problem", "method", "step")}
     case |= {name: numpy.asarray(result.values(name, group), dtype=float) for name in ("time", "state")}
     case |= {"time_unit": result.unit("time", group), "state_unit": result.unit("state", group)}
+    if "total_energy" in group:
+        case |= {name: numpy.asarray(result.values(name, group), dtype=float)
+                 for name in ("kinetic_energy", "potential_energy", "total_energy")}
     if "exact_time" in group:
         case |= {name: numpy.asarray(result.values(name, group), dtype=float)
                  for name in ("exact_time", "exact_state")}

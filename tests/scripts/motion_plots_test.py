@@ -9,6 +9,7 @@ import plot_construction
 import plot_dissipation
 import plot_energy
 import plot_oscillation
+import plot_simulated_energy
 import plot_propagation
 import plot_slope_field
 import plot_spiral
@@ -324,6 +325,18 @@ class LaterKinds(PlotTest):
         low, high = figure.axes[0].get_ylim()
         self.assertLess(high, 4)
         self.assertIn("h = 0.5 s\n(leaves the picture)", texts_of_legend(figure.axes[1]))
+
+    def test_energies_stay_readable_beside_one_that_explodes(self):
+        figure, = self.draw(plot_simulated_energy, self.make("simulated_energy"))
+        total, parts = figure.axes
+        low, high = total.get_ylim()
+        self.assertLess(high, 4)
+        names = texts_of_legend(total)
+        self.assertEqual(len(names), len(total.lines))
+        self.assertTrue(any("h = 0.5 s (0.25 s)\n(leaves the picture)" in name for name in names), names)
+        self.assertEqual(texts_of_legend(parts), ["kinetic", "potential", "total"])
+        kinetic, potential, whole = (line.get_ydata() for line in parts.lines)
+        numpy.testing.assert_allclose(kinetic + potential, whole)
 
     def test_the_tangent_touches_where_the_slope_is_that_of_the_field(self):
         figure, = self.draw(plot_construction, self.make("construction"))

@@ -125,7 +125,7 @@ def fail(path, names=None):
 
 class CasesThatCouldNotBeComputed(PlotTest):
     KINDS = ["agreement", "construction", "convergence", "dissipation", "energy", "jacobian", "linear_solver", "oscillation",
-             "propagation", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "verify",
+             "propagation", "simulated_energy", "slope_field", "spiral", "stability", "stiffness", "sweep", "vector_field", "verify",
              "work_precision"]
 
     def make(self, kind):

@@ -122,6 +122,22 @@ def oscillation(path):
             put(case, "second_order", [1])
 
 
+def simulated_energy(path):
+    """The same mass on a spring with the energies of its runs: one of them explodes."""
+    oscillation(path)
+    with h5py.File(path, "r+") as file:
+        for case in file["cases"].values():
+            state = case["state"][()]
+            kinetic, potential = 0.5 * state[:, 1] ** 2, 0.5 * state[:, 0] ** 2
+            for name, values in (("kinetic", kinetic), ("potential", potential), ("total", kinetic + potential)):
+                put(case, f"{name}_energy", values, "J")
+        names = list(file["cases"])
+        summary = file.require_group("summary")
+        if "case" not in summary:
+            put(summary, "case", names, "")
+        put(summary, "seconds", [0.25] * len(summary["case"]), "s")
+
+
 def construction(path):
     """Two steps of each Euler scheme on x' = -x."""
     slope_field(path)

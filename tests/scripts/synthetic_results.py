@@ -7,8 +7,8 @@ import pathlib
 import sys
 
 import numpy
-from synthetic_motions import (construction, dissipation, energy, new_file, oscillation, propagation, put, slope_field,
-                               spiral, trajectory, vector_field)
+from synthetic_motions import (construction, dissipation, energy, new_file, oscillation, propagation, put,
+                               simulated_energy, slope_field, spiral, trajectory, vector_field)
 
 
 METHODS = {"explicit_euler": 1, "symplectic_euler": 1, "midpoint": 2, "velocity_verlet": 2, "rk4": 4,
@@ -149,7 +149,7 @@ def stability(path):
 
 #: Kinds of pictures that come as several figures, or are chosen by what a file of kind "simulate" holds.
 LATER = {"energy": energy, "dissipation": dissipation, "propagation": propagation, "vector_field": vector_field,
-         "oscillation": oscillation, "construction": construction}
+         "oscillation": oscillation, "construction": construction, "simulated_energy": simulated_energy}
 
 
 def verify(path):

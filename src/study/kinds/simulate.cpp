@@ -57,6 +57,8 @@ struct SimulateRow {
   double step = std::numeric_limits<double>::quiet_NaN();
   double end_time = std::numeric_limits<double>::quiet_NaN();
   double end_error = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t rhs_evaluations = 0;
+  double seconds = std::numeric_limits<double>::quiet_NaN();
   Status status{};
   std::string frame_origin{}, frame_spacing{};
 };
@@ -67,11 +69,29 @@ void declare(SummaryRow& a, const SimulateRow& row) {
   a("step", "s", row.step, "NaN if the method chooses its steps, and of the vector field");
   a("end_time", "s", row.end_time, "where the run ended; NaN of the vector field");
   a("end_error", "SI", row.end_error, "‖y − exact‖₂ at the end; NaN without closed form or end");
+  a("rhs_evaluations", "1", row.rhs_evaluations, "right-hand sides of the run");
+  a("seconds", "s", row.seconds, "wall time of the run, writing of frames included; NaN of the vector field");
   a("status", "", to_string(row.status.code), "`success`, or code of why the solver stopped");
   a("frame_origin", "", row.frame_origin,
     "how the states of frames came about: `ends of steps`, or `dense output of order p: …`");
   a("frame_spacing", "", row.frame_spacing,
     "of frames in time: `even`, `even but for the last`, or `uneven`");
+}
+
+/// The energies of the frames, of states with `size` numbers.
+void add_energies(const EnergyGauge& gauge, const FrameColumns& frames, std::uint64_t size, CaseResult& result) {
+  if (!gauge.is_known()) return;
+  std::vector<double> kinetic, potential, total;
+  for (std::size_t k = 0; k < frames.times().size(); ++k) {
+    const ConstVectorMap state(frames.states().data() + k * size, static_cast<Index>(size));
+    const auto [moving, stored] = gauge.energies(frames.times()[k], state);
+    kinetic.push_back(moving);
+    potential.push_back(stored);
+    total.push_back(moving + stored);
+  }
+  result.columns.push_back({"kinetic_energy", "J", kinetic, {}, {}});
+  result.columns.push_back({"potential_energy", "J", potential, {}, {}});
+  result.columns.push_back({"total_energy", "J", total, {}, {}});
 }
 
 CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, const Integrator& integrator,
@@ -81,7 +101,8 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
   FrameColumns columns;
   const record::FramePlan plan(ivp.t0, ivp.t1, control, frames);
   record::FrameSelector selector(plan, columns);
-  EnergyWatch watch(EnergyGauge(entry.problem), selector);
+  const EnergyGauge gauge(entry.problem);
+  EnergyWatch watch(gauge, selector);
   Solution solution = context.solve(integrator, ivp, control, watch);
   const bool reached_end = solution.status.ok();
   solution.status = watch.judged(solution.status);
@@ -106,6 +127,7 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
       {"time", "s", columns.times(), {}, {}},
       {"state", "SI", columns.states(), {columns.times().size(), size}, {}}};
   add_exact(entry, result);
+  add_energies(gauge, columns, size, result);
   for (const Invariant& invariant : entry.problem.invariants) {
     std::vector<double> values;
     for (std::size_t k = 0; k < columns.times().size(); ++k) {
@@ -124,8 +146,16 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = cells_of(SimulateRow{entry.label, call, step, solution.time, end_error, solution.status,
-                                        origin.states, origin.spacing});
+  result.summary = cells_of(SimulateRow{.problem = entry.label,
+                                        .method = call,
+                                        .step = step,
+                                        .end_time = solution.time,
+                                        .end_error = end_error,
+                                        .rhs_evaluations = static_cast<std::int64_t>(solution.work.rhs_evaluations),
+                                        .seconds = solution.work.seconds,
+                                        .status = solution.status,
+                                        .frame_origin = origin.states,
+                                        .frame_spacing = origin.spacing});
   return result;
 }
 

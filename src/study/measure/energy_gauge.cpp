@@ -17,14 +17,24 @@ EnergyGauge::EnergyGauge(const Problem& problem)
   if (!has_energy) system_ = nullptr;
 }
 
-void EnergyGauge::add(double t, ConstVectorRef y, EnergyBudget& budget) const {
+std::pair<double, double> EnergyGauge::energies(double t, ConstVectorRef y) const {
   const Index n = system_->degrees_of_freedom();
   const auto q = y.head(n), v = y.tail(n);
   if (springs_ != nullptr) {
-    budget.add(springs_->energies(t, q, v));
+    const Energies energies = springs_->energies(t, q, v);
+    return {energies.kinetic(), energies.potential()};
+  }
+  const double kinetic = 0.5 * system_->mass().dot(v.cwiseAbs2());
+  return {kinetic, problem_->invariants.front().value(t, y) - kinetic};
+}
+
+void EnergyGauge::add(double t, ConstVectorRef y, EnergyBudget& budget) const {
+  const Index n = system_->degrees_of_freedom();
+  if (springs_ != nullptr) {
+    budget.add(springs_->energies(t, y.head(n), y.tail(n)));
   } else {
-    const double kinetic = 0.5 * system_->mass().dot(v.cwiseAbs2());
-    budget.add(kinetic, 0.0, problem_->invariants.front().value(t, y) - kinetic);
+    const auto [kinetic, potential] = energies(t, y);
+    budget.add(kinetic, 0.0, potential);
   }
 }
 

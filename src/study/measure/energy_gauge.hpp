@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "core/status.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "ode/energy_budget.hpp"
@@ -18,6 +20,8 @@ class EnergyGauge {
 
   /// Whether there is an energy.
   bool is_known() const { return system_ != nullptr; }
+  /// Kinetic and potential energy [J] of a state y = (q, v). Only where `is_known`.
+  std::pair<double, double> energies(double t, ConstVectorRef y) const;
   /// Adds the energies of a state y = (q, v). Only where `is_known`.
   void add(double t, ConstVectorRef y, EnergyBudget& budget) const;
   /// Adds what rounding does to a state, for steps of h [s]. Only where `is_known`; costs an evaluation of the forces.
