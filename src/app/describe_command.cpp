@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "core/error.hpp"
 #include "scene/generators.hpp"
 #include "schemes/property_list.hpp"
+#include "schemes/splitting_scheme.hpp"
 #include "system/terminal.hpp"
 #include "text/closest_name.hpp"
 #include "text/json_writer.hpp"
@@ -60,6 +62,14 @@ std::string describe_method(const DescribedMethod& method) {
        info.order_with_velocity_forces == 0 ? "variable" : std::to_string(info.order_with_velocity_forces));
   line("stages", std::to_string(info.stages));
   line("kind", info.is_explicit ? "explicit" : "implicit");
+  if (const auto* splitting = std::get_if<schemes::SplittingScheme>(&method.coefficients)) {
+    const std::vector<Float128> parts = schemes::implicit_parts(*splitting);
+    const auto solved =
+        std::ranges::count_if(parts, [](const Float128& part) { return abs(part) > Float128(1e-30); });
+    line("with dampers", solved == 0 ? "explicit"
+                                     : fmt::format("{} of {} kicks solve{} a sparse system for the velocity",
+                                                   solved, parts.size(), solved == 1 ? "s" : ""));
+  }
   line("step", info.is_adaptive && info.has_fixed_step ? "fixed (--step) or adaptive (--rtol, --atol)"
                : info.is_adaptive                      ? "adaptive (--rtol, --atol)"
                : info.is_multistep ? "fixed, the interval has to be a whole number of steps"

@@ -87,5 +87,20 @@ TEST(FindCrossing, IsBoundedByTheRangeWhereTheSpreadHidesIt) {
   EXPECT_NEAR(crossing.high, 100.0, 1e-12);
 }
 
+TEST(PowerLaw, SupportsAnExponentByItsIntervalOnly) {
+  const auto law = [](double exponent, double low, double high) {
+    return PowerLaw{.valid = true, .exponent = exponent, .exponent_low = low, .exponent_high = high};
+  };
+  EXPECT_EQ(judge_exponent(law(2.001, 1.99, 2.02), 2.0, 0.01), LawJudgement::supported);
+  EXPECT_EQ(judge_exponent(law(2.005, 2.004, 2.006), 2.0, 0.01), LawJudgement::supported);
+  EXPECT_EQ(judge_exponent(law(2.1, 1.9, 2.25), 2.0, 0.01), LawJudgement::supported);
+  EXPECT_EQ(judge_exponent(law(2.1, 2.05, 2.15), 2.0, 0.01), LawJudgement::refuted);
+  // The damped impact: nearly anything is in its interval.
+  EXPECT_EQ(judge_exponent(law(4.33, -1.4, 10.06), 2.0, 0.01), LawJudgement::open);
+  EXPECT_EQ(judge_exponent(law(2.0, -1.4, 5.4), 2.0, 0.01), LawJudgement::open);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge_exponent(law(nan, nan, nan), 2.0, 0.01), LawJudgement::refuted);
+}
+
 }  // namespace
 }  // namespace fw::analysis

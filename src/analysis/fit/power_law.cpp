@@ -68,6 +68,14 @@ Crossing zero_of(const Points& points, double shift) {
 
 }  // namespace
 
+LawJudgement judge_exponent(const PowerLaw& law, double expected, double tolerance) {
+  constexpr double widest = 0.3;
+  const bool contains = law.exponent_low <= expected && expected <= law.exponent_high;
+  if (!contains && !(std::abs(law.exponent - expected) <= tolerance)) return LawJudgement::refuted;
+  const bool is_narrow = law.exponent_low >= expected - widest && law.exponent_high <= expected + widest;
+  return is_narrow ? LawJudgement::supported : LawJudgement::open;
+}
+
 Crossing find_crossing(std::span<const double> x, std::span<const double> a, std::span<const double> b,
                        std::span<const double> spread_a, std::span<const double> spread_b) {
   Points points;

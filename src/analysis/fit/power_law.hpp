@@ -22,6 +22,14 @@ struct PowerLaw {
 /// Fits all points with finite positive x and y. What belongs into the fit is the caller's to decide.
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
+/// What a fitted exponent says of one that theory gives.
+enum class LawJudgement { supported, refuted, open };
+
+/// supported: the exponent is within `tolerance` of the expected one or its interval contains that, and the
+/// interval reaches no further than 0.3 from it; refuted: neither within the tolerance nor contained; open: the
+/// interval is too wide to tell. `law` is valid.
+LawJudgement judge_exponent(const PowerLaw& law, double expected, double tolerance);
+
 /// Where two curves through the points (x_k, a_k) and (x_k, b_k) cross, on logarithmic axes.
 struct Crossing {
   bool valid = false;    ///< the sign of log a − log b changes exactly once

@@ -79,7 +79,8 @@ void declare(SummaryRow& a, const SimulateRow& row) {
 }
 
 /// The energies of the frames, of states with `size` numbers.
-void add_energies(const EnergyGauge& gauge, const FrameColumns& frames, std::uint64_t size, CaseResult& result) {
+void add_energies(const EnergyGauge& gauge, const FrameColumns& frames, std::uint64_t size,
+                  CaseResult& result) {
   if (!gauge.is_known()) return;
   std::vector<double> kinetic, potential, total;
   for (std::size_t k = 0; k < frames.times().size(); ++k) {
@@ -146,16 +147,17 @@ CaseResult run_trajectory(const StudyProblem& entry, const std::string& call, co
     }
     end_error = std::sqrt(sum);
   }
-  result.summary = cells_of(SimulateRow{.problem = entry.label,
-                                        .method = call,
-                                        .step = step,
-                                        .end_time = solution.time,
-                                        .end_error = end_error,
-                                        .rhs_evaluations = static_cast<std::int64_t>(solution.work.rhs_evaluations),
-                                        .seconds = solution.work.seconds,
-                                        .status = solution.status,
-                                        .frame_origin = origin.states,
-                                        .frame_spacing = origin.spacing});
+  result.summary =
+      cells_of(SimulateRow{.problem = entry.label,
+                           .method = call,
+                           .step = step,
+                           .end_time = solution.time,
+                           .end_error = end_error,
+                           .rhs_evaluations = static_cast<std::int64_t>(solution.work.rhs_evaluations),
+                           .seconds = solution.work.seconds,
+                           .status = solution.status,
+                           .frame_origin = origin.states,
+                           .frame_spacing = origin.spacing});
   return result;
 }
 

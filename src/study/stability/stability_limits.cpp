@@ -97,7 +97,7 @@ class LimitCase {
       return;
     }
     std::string reason;
-    bool all_hold = true, is_theory = true;
+    bool all_hold = true, is_theory = true, is_decided = true;
     double largest = 0.0;
     for (std::size_t k = 0; k < limits_.size(); ++k) {
       const StabilityLimit& limit = limits_[k];
@@ -112,7 +112,12 @@ class LimitCase {
     row_.largest_deviation = largest;
     if (is_family()) {
       reason = fmt::format("largest deviation of observed from predicted limits {:.2g}", largest);
-      all_hold = fit_laws(reason) && all_hold;
+      const analysis::LawJudgement law = fit_laws(reason);
+      all_hold = all_hold && law != analysis::LawJudgement::refuted;
+      if (law == analysis::LawJudgement::open) {
+        reason += "; the exponent is not decided";
+        is_decided = false;
+      }
     } else {
       fill_single(limits_.front());
     }
@@ -130,7 +135,7 @@ class LimitCase {
                                      reason
                                : "no prediction for this scheme on this problem; " + reason
                          : "nonlinear, prediction from J along the solution; " + reason;
-    if (is_theory) result_.verdict = all_hold ? Verdict::holds : Verdict::fails;
+    if (is_theory && (is_decided || !all_hold)) result_.verdict = all_hold ? Verdict::holds : Verdict::fails;
   }
 
   void fill_single(const StabilityLimit& limit) {
@@ -142,8 +147,10 @@ class LimitCase {
     row_.monotone_observed = limit.monotone_observed;
   }
 
-  /// Fits limit ∝ |parameter|^p to predictions and observations; false where theory's p is missed.
-  bool fit_laws(std::string& reason) {
+  /// Fits limit ∝ |parameter|^p to predictions and observations: whether theory's p is met. Where there is no
+  /// law, or no theory, nothing is said against it.
+  analysis::LawJudgement fit_laws(std::string& reason) {
+    using analysis::LawJudgement;
     std::vector<double> x, predicted, observed;
     for (std::size_t k = 0; k < limits_.size(); ++k) {
       x.push_back(std::abs(family_.values[k]));
@@ -156,22 +163,24 @@ class LimitCase {
       const analysis::PowerLaw law = analysis::fit_power_law(x, limit);
       if (!law.valid) {
         reason += fmt::format("; no law of {} limits ({})", what, law.reason);
-        return true;  // nothing that depends on the parameter: no limit, or none above 0
+        return LawJudgement::supported;  // nothing depends on the parameter: no limit, or none above 0
       }
       exponent = law.exponent;
       low = law.exponent_low;
       high = law.exponent_high;
       reason += fmt::format("; {} exponent {:.4f} [{:.4f}, {:.4f}]", what, exponent, low, high);
-      const double expected = family_.exponent;
-      return std::isnan(expected) || (low <= expected && expected <= high) ||
-             std::abs(exponent - expected) <= settings_.exponent_tolerance;
+      if (std::isnan(family_.exponent)) return LawJudgement::supported;
+      return analysis::judge_exponent(law, family_.exponent, settings_.exponent_tolerance);
     };
-    const bool predicted_holds = fit("predicted", predicted, row_.predicted_exponent,
-                                     row_.predicted_exponent_low, row_.predicted_exponent_high);
-    const bool observed_holds = fit("observed", observed, row_.observed_exponent, row_.observed_exponent_low,
-                                    row_.observed_exponent_high);
+    const LawJudgement of_predicted = fit("predicted", predicted, row_.predicted_exponent,
+                                          row_.predicted_exponent_low, row_.predicted_exponent_high);
+    const LawJudgement of_observed = fit("observed", observed, row_.observed_exponent,
+                                         row_.observed_exponent_low, row_.observed_exponent_high);
     if (!std::isnan(family_.exponent)) reason += fmt::format(", in theory {:g}", family_.exponent);
-    return predicted_holds && observed_holds;
+    for (const LawJudgement judgement : {LawJudgement::refuted, LawJudgement::open}) {
+      if (of_predicted == judgement || of_observed == judgement) return judgement;
+    }
+    return LawJudgement::supported;
   }
 
   void add_columns() {

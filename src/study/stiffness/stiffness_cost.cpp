@@ -200,10 +200,18 @@ class CostCase {
         coverage, law_.exponent, law_.exponent_low, law_.exponent_high, law_.points, last_product);
     // Steps of its own choice end near the limit of stability, but at no exact distance from it.
     if (info().is_adaptive || !is_limited_by_stability()) return conclude(Verdict::not_applicable, found);
-    const bool holds = std::abs(law_.exponent - 1.0) <= settings_.exponent_tolerance;
-    return conclude(holds ? Verdict::holds : Verdict::fails,
-                    fmt::format("{}, predicted 1 within {:g}: the stability interval limits h|lambda|", found,
-                                settings_.exponent_tolerance));
+    const std::string claim =
+        fmt::format("{}, predicted 1 within {:g}: the stability interval limits h|lambda|", found,
+                    settings_.exponent_tolerance);
+    switch (analysis::judge_exponent(law_, 1.0, settings_.exponent_tolerance)) {
+      case analysis::LawJudgement::supported:
+        return conclude(Verdict::holds, claim);
+      case analysis::LawJudgement::refuted:
+        return conclude(Verdict::fails, claim);
+      case analysis::LawJudgement::open:
+        break;
+    }
+    return conclude(Verdict::not_applicable, claim + "; not decided: the interval is too wide");
   }
 
   CaseResult conclude(Verdict verdict, std::string reason) const {

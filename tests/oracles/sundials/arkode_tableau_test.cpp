@@ -146,8 +146,7 @@ Vector arkode_error_estimate(const detail::ArkodeTables& tables, const Ivp& ivp,
   ArkStepMemory ark(ivp.t0, y.get(), is_explicit ? std::move(whole) : nullptr,
                     is_explicit ? nullptr : std::move(whole), tables, report, work, context.get());
   ark.choose_steps({.relative_tolerance = 1e-10, .absolute_tolerance = tolerance, .initial_step = h},
-                   Vector::Constant(ivp.y0.size(), tolerance),
-                   {.newton_coefficient = 1e-15 / tolerance});
+                   Vector::Constant(ivp.y0.size(), tolerance), {.newton_coefficient = 1e-15 / tolerance});
   if (!is_explicit) {
     EXPECT_EQ(ARKStepSetMaxNonlinIters(ark.get(), 30), 0);
   }
