@@ -104,7 +104,10 @@ Binary128 __wrap___multf3(Binary128 a, Binary128 b) {
   const unsigned exponent = exponent_of(x) + exponent_of(y) - exponent_bias;
   if (!is_normal(exponent_of(x)) || !is_normal(exponent_of(y)) || !stays_normal(exponent) ||
       !stays_normal(exponent + 1)) [[unlikely]] {
-    return __real___multf3(a, b);
+    // Matrices and tableaus have many zeros.
+    const bool is_zero = ((x & ~sign_bit) == 0 && exponent_of(y) != exponent_bits) ||
+                         ((y & ~sign_bit) == 0 && exponent_of(x) != exponent_bits);
+    return is_zero ? std::bit_cast<Binary128>((x ^ y) & sign_bit) : __real___multf3(a, b);
   }
   // The product of 256 bits, so shifted that its upper half has the significand, with one bit more if it is >= 2.
   const Uint128 p = significand_of(x) << 15, q = significand_of(y) << 1;
