@@ -3,7 +3,8 @@
 # With -DENVIRONMENT=NAME=VALUE it runs with that variable, with -DFAILURE=|REGEX it fails where its output matches.
 #
 # A process per suite, not per test: most tests take milliseconds, while the libraries behind them take longer to load,
-# and the tests of a suite share reference solutions. A large suite is dealt out to up to four processes.
+# and the tests of a suite share reference solutions. A large suite is dealt out to two processes: more of them would
+# compute the same references more often.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE code TIMEOUT 120)
 if(NOT code EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} --gtest_list_tests: exit code ${code}\n${listed}")
@@ -32,8 +33,8 @@ endif()
 set(text "# ${all} tests\n")
 foreach(suite IN LISTS suites)
   math(EXPR parts "(${tests_${suite}} + 24) / 25")
-  if(parts GREATER 4)
-    set(parts 4)
+  if(parts GREATER 2)
+    set(parts 2)
   endif()
   foreach(part RANGE 1 ${parts})
     set(name "${LABEL}.${suite}")

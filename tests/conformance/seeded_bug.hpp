@@ -24,6 +24,8 @@ struct SeededBug {
   schemes::SchemeData data{};                       ///< of the right scheme
   std::optional<schemes::SchemeData> wrong_data{};  ///< where the mistake is in the listed coefficients
   std::vector<std::string> caught_by{};             ///< properties that must fail
+  std::string
+      twin{};  ///< the scheme of the catalogue that is the twin; empty where the twin is written by hand
 };
 
 /// For the list of tests.
@@ -53,7 +55,8 @@ inline SeededBug code_bug(std::string name, std::string description, const std::
                 return mutated ? with_claims(right->info(), mutant()) : std::move(right);
               },
           .data = catalog::theory_of_call(twin).coefficients,
-          .caught_by = std::move(caught_by)};
+          .caught_by = std::move(caught_by),
+          .twin = twin};
 }
 
 /// A wrong number in the coefficients that the code runs with; the listed ones are right.
@@ -98,7 +101,8 @@ SeededBug claim_bug(std::string name, std::string description, const std::string
                 return with_claims(claims, std::move(right));
               },
           .data = catalog::theory_of_call(twin).coefficients,
-          .caught_by = std::move(caught_by)};
+          .caught_by = std::move(caught_by),
+          .twin = twin};
 }
 
 /// A hand-written scheme with a switch for its mistake, under the claims of a scheme of the catalogue that

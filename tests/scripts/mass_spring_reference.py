@@ -33,6 +33,7 @@ class MassSpringModel:
         self.between = np.concatenate([column[0] for column in columns] or [np.zeros((0, 2), dtype=int)])
         self.law, self.stiffness, self.damping, self.rest_length = (
             np.concatenate([column[k] for column in columns] or [np.zeros(0)]) for k in range(1, 5))
+        self.law = self.law.astype(object)  # also without a spring
         number = len(self.between)
         # incidence[i, s] = +1 where spring s starts at i, -1 where it ends: adds f to i and -f to j (S6).
         self.incidence = np.zeros((self.count, number))
@@ -57,22 +58,37 @@ class MassSpringModel:
         return self.stiffness / np.where(self.law == "strain", self.rest_length, 1.0)
 
     def force(self, x, v):
-        """Total force on each point [N], zero on fixed ones; complex arguments give complex-step derivatives."""
-        d = -(self.incidence.T @ x)
-        w = -(self.incidence.T @ v)
-        length = np.sqrt((d * d).sum(axis=1))
-        r = d / length[:, None]
-        elongation = length - self.rest_length
-        slack = (self.law == "tension_only") & (elongation.real < 0.0)  # the tangent is zero only below l0
+        """Total force on each point [N], zero on fixed ones; complex arguments give complex-step derivatives. Shape
+        (n, 3), or (n, 3, b) for b states at once."""
+        per_item = x.size // len(x)
+        ones = (1,) * (x.ndim - 2)
+
+        def along(matrix, vectors):
+            return (matrix @ vectors.reshape(-1, per_item)).reshape(-1, *x.shape[1:])
+
+        def column(numbers):
+            return numbers.reshape(len(numbers), 1, *ones)
+
+        d = along(-self.incidence.T, x)
+        w = along(-self.incidence.T, v)
+        length = np.sqrt((d * d).sum(axis=1, keepdims=True))
+        r = d / length
+        elongation = length - column(self.rest_length)
+        slack = column(self.law == "tension_only") & (elongation.real < 0.0)  # the tangent is zero only below l0
         elongation = np.where(slack, 0.0, elongation)
-        tension = self.effective_stiffness() * elongation + self.damping * (w * r).sum(axis=1)
-        total = self.incidence @ (tension[:, None] * r)
-        total = total + self.mass[:, None] * self.gravity - self.drag * v
-        return total * self.free
+        tension = (column(self.effective_stiffness()) * elongation
+                   + column(self.damping) * (w * r).sum(axis=1, keepdims=True))
+        total = along(self.incidence, tension * r)
+        total += column(self.mass) * self.gravity.reshape(1, 3, *ones) - self.drag * v
+        return total * column(self.free)
 
     def rate(self, y):
-        """y = (x, v) of shape (2, n, 3); y' = (v, f/m), zero for fixed points."""
-        return np.stack((y[1] * self.free, self.force(y[0], y[1]) / self.mass[:, None]))
+        """y = (x, v) of shape (2, n, 3), or (2, n, 3, b) for b states at once; y' = (v, f/m), zero for fixed points."""
+        ones = (1,) * (y.ndim - 3)
+        slope = np.empty(y.shape)
+        np.multiply(y[1], self.free.reshape(-1, 1, *ones), out=slope[0])
+        np.divide(self.force(y[0], y[1]), self.mass.reshape(-1, 1, *ones), out=slope[1])
+        return slope
 
     def start(self):
         return np.stack((self.position, self.velocity * self.free))
@@ -107,15 +123,21 @@ SUBSTEPS = [2 * (k + 1) for k in range(COLUMNS)]
 
 
 def extrapolation_step(rate, y, step):
-    """Gragg's modified midpoint rule extrapolated in h^2 [Hairer, Norsett, Wanner 1993, II.9]; result, error."""
-    slope = rate(y)
+    """Gragg's modified midpoint rule extrapolated in h^2 [Hairer, Norsett, Wanner 1993, II.9]; result, error. The
+    columns advance side by side, in one call of the rate per substep."""
+    h = step / np.array(SUBSTEPS)
+    before = np.broadcast_to(y[..., None], (*y.shape, COLUMNS))
+    now = before + h * rate(y)[..., None]
+    ends = []
+    for done in range(1, SUBSTEPS[-1] + 1):
+        slope = h * rate(now)
+        if done == SUBSTEPS[len(ends)]:  # the first column is at its end
+            ends.append(0.5 * (now + before + slope)[..., 0])
+            before, now, slope, h = before[..., 1:], now[..., 1:], slope[..., 1:], h[1:]
+        before, now = now, before + 2.0 * slope
     row = []
-    for number in SUBSTEPS:
-        h = step / number
-        before, now = y, y + h * slope
-        for _ in range(number - 1):
-            before, now = now, before + 2.0 * h * rate(now)
-        row_before, row = row, [0.5 * (now + before + h * rate(now))]
+    for number, end in zip(SUBSTEPS, ends):
+        row_before, row = row, [end]
         for k, entry in enumerate(row_before):
             divisor = (number / SUBSTEPS[len(row_before) - 1 - k]) ** 2 - 1.0
             row.append(row[k] + (row[k] - entry) / divisor)
@@ -123,8 +145,9 @@ def extrapolation_step(rate, y, step):
 
 
 def integrate(rate, y0, times, tolerance=1e-13):
-    """States at the given times (the first is the start). The tolerance is relative to the largest entry of x and
-    of v so far, at least 1 each; a step over a kink of the force is halved until its error is as small as any other."""
+    """States at the given times (the first is the start); `rate` takes several states at once, in a last axis of their
+    own. The tolerance is relative to the largest entry of x and of v so far, at least 1 each; a step over a kink of the
+    force is halved until its error is as small as any other."""
     states, y, t = [y0], y0, float(times[0])
     scale = np.maximum(1.0, np.abs(y0).max(axis=(1, 2)))
     step = 1e-3 * (times[-1] - times[0])
@@ -190,13 +213,10 @@ def velocity_verlet(model, y, h):
 def force_jacobians(model, x, v):
     """K = df/dx and D = df/dv by complex steps, so that no formula for a tangent is trusted."""
     size, tiny = 3 * model.count, 1e-30
-    stiffness, damping = np.empty((size, size)), np.empty((size, size))
-    for column in range(size):
-        nudge = np.zeros(size, dtype=complex)
-        nudge[column] = 1j * tiny
-        nudge = nudge.reshape(x.shape)
-        stiffness[:, column] = model.force(x + nudge, v + 0j).imag.ravel() / tiny
-        damping[:, column] = model.force(x + 0j, v + nudge).imag.ravel() / tiny
+    nudges = 1j * tiny * np.eye(size).reshape(*x.shape, size)  # a state per coordinate
+    x, v = (np.repeat(part[..., None], size, axis=-1) for part in (x, v))
+    stiffness = model.force(x + nudges, v + 0j).imag.reshape(size, size) / tiny
+    damping = model.force(x + 0j, v + nudges).imag.reshape(size, size) / tiny
     return stiffness, damping
 
 

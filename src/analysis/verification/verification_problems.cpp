@@ -1,9 +1,13 @@
 #include "analysis/verification/verification_problems.hpp"
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <stdexcept>
+#include <type_traits>
 
 #include "analysis/fit/order_fit.hpp"
 #include "analysis/reference/gragg_extrapolation.hpp"
@@ -27,14 +31,60 @@ void conservative_force(std::span<const S> q, std::span<S> f) {
   f[2] -= product * q[0] * q[1];
 }
 
+/// What drives the oscillators.
+struct Drive {
+  template <class S>
+  static std::array<S, 2> of(const S& t) {
+    using std::cos;
+    using std::sin;
+    return {sin(S(1.5) * t), cos(S(2.25) * t)};
+  }
+};
+
+/// What stirs the flow.
+struct Stirring {
+  template <class S>
+  static std::array<S, 2> of(const S& t) {
+    using std::sin;
+    return {sin(S(2) * t), sin(S(3) * t)};
+  }
+};
+
+/// Function::of(t), remembered for some thousand times per thread: the place of a time follows from its bits, and a new
+/// time takes the place of an old one. In binary128 sines are half of a verification, and most are asked for again:
+/// an implicit step evaluates its stages at one time until they have converged, and the members of an ensemble run
+/// over the same steps.
+template <class Function>
+const std::array<Float128, 2>& remembered(const Float128& t) {
+  using Bits = std::array<std::uint64_t, 2>;
+  struct Entry {
+    bool is_known = false;
+    Bits time{};
+    std::array<Float128, 2> values{};
+  };
+  constexpr int index_bits = 14;
+  thread_local std::vector<Entry> entries(std::size_t{1} << index_bits);
+  const Bits time = std::bit_cast<Bits>(t.backend().value());
+  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;  // Fibonacci hashing: 2^64 over the golden ratio
+  Entry& entry = entries[((time[0] ^ std::rotl(time[1], 29)) * odd) >> (64 - index_bits)];
+  if (!entry.is_known || entry.time != time) entry = {true, time, Function::of(t)};
+  return entry.values;
+}
+
+/// Function::of(t).
+template <class Function, class S>
+std::array<S, 2> at(const S& t) {
+  if constexpr (std::is_same_v<S, Float128>) return remembered<Function>(t);
+  return Function::of(t);
+}
+
 struct DrivenForce {
   template <class S>
   void operator()(const S& t, std::span<const S> q, std::span<const S>, std::span<S> f) const {
-    using std::cos;
-    using std::sin;
+    const std::array<S, 2> driven = at<Drive>(t);
     conservative_force(q, f);
-    f[0] += S(0.75) * sin(S(1.5) * t);
-    f[1] += S(0.5) * cos(S(2.25) * t) * q[2];
+    f[0] += S(0.75) * driven[0];
+    f[1] += S(0.5) * driven[1] * q[2];
     f[2] += S(0.25) * t;
   }
 };
@@ -61,10 +111,10 @@ struct Flow {
   template <class S>
   void operator()(const S& t, std::span<const S> y, std::span<S> dydt) const {
     using std::cos;
-    using std::sin;
-    dydt[0] = y[1] * y[2] - S(0.5) * y[0] + S(0.25) * sin(S(2) * t);
+    const std::array<S, 2> stirred = at<Stirring>(t);
+    dydt[0] = y[1] * y[2] - S(0.5) * y[0] + S(0.25) * stirred[0];
     dydt[1] = -y[0] * y[2] + cos(y[1]) * t;
-    dydt[2] = S(-0.5) * y[0] * y[1] - S(0.25) * y[2] * y[2] + S(0.125) * y[0] * sin(S(3) * t);
+    dydt[2] = S(-0.5) * y[0] * y[1] - S(0.25) * y[2] * y[2] + S(0.125) * y[0] * stirred[1];
   }
 };
 

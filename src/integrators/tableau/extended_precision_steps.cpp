@@ -1,6 +1,6 @@
 #include "integrators/tableau/extended_precision_steps.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace fw::integrators {
 
@@ -27,29 +27,35 @@ std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128&
   return result;
 }
 
-void solve_extended_system(std::vector<Float128>& A, std::vector<Float128>& b) {
-  const std::size_t n = b.size();
+ExtendedLu::ExtendedLu(std::vector<Float128> A, std::size_t size) : size_(size), factors_(std::move(A)) {
+  const std::size_t n = size_;
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t pivot = k;
     for (std::size_t i = k + 1; i < n; ++i) {
-      if (abs(A[i * n + k]) > abs(A[pivot * n + k])) pivot = i;
+      if (abs(factors_[i * n + k]) > abs(factors_[pivot * n + k])) pivot = i;
     }
-    if (pivot != k) {
-      std::swap_ranges(A.begin() + static_cast<std::ptrdiff_t>(k * n),
-                       A.begin() + static_cast<std::ptrdiff_t>((k + 1) * n),
-                       A.begin() + static_cast<std::ptrdiff_t>(pivot * n));
-      std::swap(b[k], b[pivot]);
-    }
+    pivots_.push_back(pivot);
+    for (std::size_t j = 0; pivot != k && j < n; ++j) std::swap(factors_[k * n + j], factors_[pivot * n + j]);
     for (std::size_t i = k + 1; i < n; ++i) {
-      const Float128 factor = A[i * n + k] / A[k * n + k];
+      const Float128 factor = factors_[i * n + k] / factors_[k * n + k];
+      factors_[i * n + k] = factor;
       if (factor == 0) continue;
-      for (std::size_t j = k; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
-      b[i] -= factor * b[k];
+      for (std::size_t j = k + 1; j < n; ++j) factors_[i * n + j] -= factor * factors_[k * n + j];
+    }
+  }
+}
+
+void ExtendedLu::solve(std::vector<Float128>& b) const {
+  const std::size_t n = size_;
+  for (std::size_t k = 0; k < n; ++k) std::swap(b[k], b[pivots_[k]]);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = k + 1; i < n; ++i) {
+      if (factors_[i * n + k] != 0) b[i] -= factors_[i * n + k] * b[k];
     }
   }
   for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) b[k] -= A[k * n + j] * b[j];
-    b[k] /= A[k * n + k];
+    for (std::size_t j = k + 1; j < n; ++j) b[k] -= factors_[k * n + j] * b[j];
+    b[k] /= factors_[k * n + k];
   }
 }
 

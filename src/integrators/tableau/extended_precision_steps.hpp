@@ -18,8 +18,19 @@ std::vector<Float128> run_extended_steps(const Ivp& ivp, std::uint64_t steps, co
 std::vector<Float128> extended_jacobian(const OdeSystem& system, const Float128& t,
                                         const std::vector<Float128>& y);
 
-/// Solves A x = b in place (A row by row, overwritten; b becomes x) by elimination with partial pivoting. For
-/// the small systems on which orders are measured.
-void solve_extended_system(std::vector<Float128>& A, std::vector<Float128>& b);
+/// A row by row, factorised by elimination with partial pivoting. For the small systems on which orders are
+/// measured.
+class ExtendedLu {
+ public:
+  ExtendedLu(std::vector<Float128> A, std::size_t size);
+
+  /// A x = b in place: b becomes x.
+  void solve(std::vector<Float128>& b) const;
+
+ private:
+  std::size_t size_;
+  std::vector<Float128> factors_;    ///< the upper triangle, and below it the factors of the elimination
+  std::vector<std::size_t> pivots_;  ///< the row that column k was exchanged with
+};
 
 }  // namespace fw::integrators

@@ -1,7 +1,9 @@
 #include "integrators/tableau/rosenbrock.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "integrators/implicit/shifted_jacobian.hpp"
@@ -204,6 +206,8 @@ void extended_step(const ExtendedTableau& tableau, const OdeSystem& system, cons
   for (std::size_t i = 0; i < n; ++i) time_derivative[i] = (after[i] - before[i]) / (2 * increment);
   std::vector<std::vector<Float128>> k(s, std::vector<Float128>(n));
   std::vector<Float128> argument(n), carried(n);
+  Float128 factorised = 0;  // the diagonal h γ_ii of the matrix that `lu` has; all stages mostly share it
+  std::optional<ExtendedLu> lu;
   for (std::size_t stage = 0; stage < s; ++stage) {
     Float128 alpha_sum = 0, gamma_sum = tableau.gamma[stage * s + stage];
     argument = y;
@@ -218,17 +222,23 @@ void extended_step(const ExtendedTableau& tableau, const OdeSystem& system, cons
       }
     }
     system.rhs(Float128(t + alpha_sum * h), argument, k[stage]);
-    std::vector<Float128> matrix(n * n);
     const Float128 diagonal = h * tableau.gamma[stage * s + stage];
+    if (stage == 0 || diagonal != factorised) {
+      std::vector<Float128> matrix(n * n);
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
+          matrix[i * n + j] = (i == j ? Float128(1) : Float128(0)) - diagonal * J[i * n + j];
+        }
+      }
+      lu.emplace(std::move(matrix), n);
+      factorised = diagonal;
+    }
     for (std::size_t i = 0; i < n; ++i) {
       Float128 sum = 0;
-      for (std::size_t j = 0; j < n; ++j) {
-        sum += J[i * n + j] * carried[j];
-        matrix[i * n + j] = (i == j ? Float128(1) : Float128(0)) - diagonal * J[i * n + j];
-      }
+      for (std::size_t j = 0; j < n; ++j) sum += J[i * n + j] * carried[j];
       k[stage][i] = h * k[stage][i] + h * sum + gamma_sum * h * h * time_derivative[i];
     }
-    solve_extended_system(matrix, k[stage]);
+    lu->solve(k[stage]);
   }
   for (std::size_t stage = 0; stage < s; ++stage) {
     for (std::size_t i = 0; i < n; ++i) y[i] += tableau.b[stage] * k[stage][i];
