@@ -8,6 +8,8 @@ import tomllib
 
 import numpy as np
 
+from solid_reference import Solid
+
 
 def per_item(value, count):
     """One number for all, or a list with one number per item."""
@@ -15,7 +17,8 @@ def per_item(value, count):
 
 
 class MassSpringModel:
-    """The equations of motion of one scene file: m v' = gravity + drag + springs + dampers, fixed points at rest."""
+    """The equations of motion of one scene file: m v' = gravity + drag + springs + dampers + anchors + obstacles, fixed
+    points at rest."""
 
     def __init__(self, toml_text):
         scene = tomllib.loads(toml_text)
@@ -33,6 +36,7 @@ class MassSpringModel:
         self.between = np.concatenate([column[0] for column in columns] or [np.zeros((0, 2), dtype=int)])
         self.law, self.stiffness, self.damping, self.rest_length = (
             np.concatenate([column[k] for column in columns] or [np.zeros(0)]) for k in range(1, 5))
+        self.law = self.law.astype(object)
         number = len(self.between)
         # incidence[i, s] = +1 where spring s starts at i, -1 where it ends: adds f to i and -f to j (S6).
         self.incidence = np.zeros((self.count, number))
@@ -40,6 +44,13 @@ class MassSpringModel:
         self.incidence[self.between[:, 1], np.arange(number)] -= 1.0
         self.free = np.ones((self.count, 1))
         self.free[self.fixed] = 0.0
+        self.solids = [Solid(entry) for entry in scene.get("obstacle", [])]
+        ties = [(p, entry) for entry in scene.get("anchor", []) for p in np.atleast_1d(entry["particle"])]
+        self.anchored = np.array([p for p, _ in ties], dtype=int)
+        self.anchor_stiffness = np.array([entry["stiffness"] for _, entry in ties], dtype=float)
+        self.anchor_damping = np.array([entry.get("damping", 0.0) for _, entry in ties], dtype=float)
+        self.anchor_position = np.array([entry.get("position", self.position[p]) for p, entry in ties],
+                                        dtype=float).reshape(-1, 3)
         self.solutions = {}
 
     def spring_columns(self, group):
@@ -68,6 +79,12 @@ class MassSpringModel:
         tension = self.effective_stiffness() * elongation + self.damping * (w * r).sum(axis=1)
         total = self.incidence @ (tension[:, None] * r)
         total = total + self.mass[:, None] * self.gravity - self.drag * v
+        if len(self.anchored) > 0:
+            pull = (self.anchor_stiffness[:, None] * (x[self.anchored] - self.anchor_position)
+                    + self.anchor_damping[:, None] * v[self.anchored])
+            np.subtract.at(total, self.anchored, pull)
+        for solid in self.solids:
+            total = total + solid.force(x, v)
         return total * self.free
 
     def rate(self, y):
@@ -81,6 +98,8 @@ class MassSpringModel:
         """A bound [1/s] of the eigenvalues' size at the rest lengths: springs by Gershgorin, dampers and drag alike."""
         stiffness = np.abs(self.incidence) @ self.effective_stiffness()
         damping = np.abs(self.incidence) @ self.damping
+        np.add.at(stiffness, self.anchored, self.anchor_stiffness)
+        np.add.at(damping, self.anchored, self.anchor_damping)
         return float(np.sqrt(2.0 * (stiffness / self.mass).max()) + (2.0 * damping / self.mass).max()
                      + (self.drag / self.mass).max())
 
@@ -88,12 +107,27 @@ class MassSpringModel:
         return 0.5 * float((self.mass[:, None] * v * v).sum())
 
     def potential_energy(self, x):
-        """Springs (half k elongation^2, only stretched ones for tension_only) and gravity, zero at the origin."""
+        """Gravity, zero at the origin, and `elastic_energy`."""
+        return self.elastic_energy(x) - float((self.mass[:, None] * x * self.gravity).sum())
+
+    def dissipated_power(self, x, v):
+        """What dampers, drag and damped obstacles take: all forces that velocities add, times the velocity."""
+        return float(((self.force(x, np.zeros_like(v)) - self.force(x, v)) * v).sum())
+
+    def has_velocity_forces(self):
+        return bool(self.damping.any() or self.anchor_damping.any() or self.drag > 0.0
+                    or any(solid.damping > 0.0 for solid in self.solids))
+
+    def elastic_energy(self, x):
+        """Springs (half k elongation^2, only stretched ones for tension_only), anchors and obstacles."""
         length = np.sqrt(((self.incidence.T @ x) ** 2).sum(axis=1))
         elongation = length - self.rest_length
         elongation = np.where((self.law == "tension_only") & (elongation < 0.0), 0.0, elongation)
         elastic = 0.5 * float((self.effective_stiffness() * elongation**2).sum())
-        return elastic - float((self.mass[:, None] * x * self.gravity).sum())
+        offset = x[self.anchored] - self.anchor_position
+        elastic += 0.5 * float((self.anchor_stiffness[:, None] * offset**2).sum())
+        moving = self.free[:, 0] > 0.0
+        return elastic + sum(solid.energy(x[moving]) for solid in self.solids)
 
     def linear_momentum(self, v):
         return (self.mass[:, None] * v).sum(axis=0)
@@ -122,12 +156,13 @@ def extrapolation_step(rate, y, step):
     return row[-1], row[-1] - row[-2]
 
 
-def integrate(rate, y0, times, tolerance=1e-13):
+def integrate(rate, y0, times, tolerance=1e-13, longest=np.inf):
     """States at the given times (the first is the start). The tolerance is relative to the largest entry of x and
-    of v so far, at least 1 each; a step over a kink of the force is halved until its error is as small as any other."""
+    of v so far, at least 1 each; a step over a kink of the force is halved until its error is as small as any other.
+    No step is longer than `longest`, so that none passes over a solid unseen."""
     states, y, t = [y0], y0, float(times[0])
     scale = np.maximum(1.0, np.abs(y0).max(axis=(1, 2)))
-    step = 1e-3 * (times[-1] - times[0])
+    step = min(1e-3 * (times[-1] - times[0]), longest)
     for target in times[1:]:
         while t < target:
             # a remainder close to the step is taken whole, so that no sliver is left before a frame
@@ -147,7 +182,7 @@ def integrate(rate, y0, times, tolerance=1e-13):
                 continue
             t, y = (float(target) if last else t + trial), result
             scale = np.maximum(scale, np.abs(y).max(axis=(1, 2)))
-            step = max(step, trial * factor) if last else trial * factor
+            step = min(max(step, trial * factor) if last else trial * factor, longest)
         states.append(y)
     return np.array(states)
 
