@@ -126,10 +126,10 @@ class Verdicts(Federwerk):
             campaign.run()
             for kind in campaign.results:
                 found = campaign.contradictions(kind)
+                if settings.count:
+                    print(index, campaign.character, kind, *[" | ".join(text) for text in found], sep="\n  ", flush=True)
                 with self.subTest(index=index, character=campaign.character, kind=kind):
                     self.assertEqual(found, [], "\n".join(" | ".join(text) for text in found))
-            if settings.count:
-                print(index, campaign.character, flush=True)
 
     def test_another_truth_contradicts(self):
         """Masses that are off by a hundredth are seen in every kind that takes them from the scene."""

@@ -229,7 +229,10 @@ class CostCase {
                       claim + "; not decided, since no coarser run is known to miss the target");
     }
     if (std::abs(law_.exponent - 1.0) <= tolerance) return conclude(Verdict::holds, claim);
-    const bool is_refuted = law_.exponent_low > 1.0 + tolerance || law_.exponent_high < 1.0 - tolerance;
+    // In between both limit the step, and the exponent is nobody's.
+    constexpr double at_the_end = 0.8;
+    const bool is_refuted = least_product >= at_the_end * interval &&
+                            (law_.exponent_low > 1.0 + tolerance || law_.exponent_high < 1.0 - tolerance);
     return conclude(is_refuted ? Verdict::fails : Verdict::not_applicable,
                     is_refuted ? claim : claim + "; not decided");
   }
