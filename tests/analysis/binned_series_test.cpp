@@ -46,6 +46,23 @@ TEST(Drift, SeparatesATrendFromAnOscillation) {
   EXPECT_NEAR(drift.significance(), 1e-3 * 950.0 / drift.oscillation, 0.01);
 }
 
+TEST(Drift, KnowsBatchesThatAreShortAgainstTheMotion) {
+  const auto drift_of = [](auto value) {
+    BinnedSeries series(4000, 200);
+    for (int k = 0; k < 4000; ++k) series.add(0.01 * k, value(0.01 * k));
+    return fit_drift(series);
+  };
+  std::mt19937_64 random(20261128);
+  std::normal_distribution<double> noise;
+  const auto fast = [&](double) { return noise(random); };
+  EXPECT_TRUE(drift_of([&](double t) { return 1e-2 * t + fast(t); }).has_long_batches());
+  // A trend alone oscillates in no batch, and the means over three slow waves follow these.
+  EXPECT_FALSE(drift_of([](double t) { return 1e-2 * t; }).has_long_batches());
+  const Drift slow = drift_of([&](double t) { return 1e-2 * t + fast(t) + std::sin(0.5 * t); });
+  EXPECT_FALSE(slow.has_long_batches());
+  EXPECT_LT(slow.independence, 1.2);
+}
+
 TEST(Drift, CoversZeroForNoiseWithoutTrendAsOftenAsItSays) {
   std::mt19937_64 random(20261122);
   std::normal_distribution<double> noise;

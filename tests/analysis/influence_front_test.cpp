@@ -49,6 +49,21 @@ TEST(InfluenceFront, OfRungeKuttaMethodsMovesHalfAsManySpringsAsStages) {
   EXPECT_EQ(fronts_of(schemes::explicit_tableaus(), "kutta3", kick).fronts[40].velocity, 60);
 }
 
+TEST(InfluenceFront, GoesThroughDampersWithTheVelocitiesOfRungeKuttaMethods) {
+  const auto damped = [](const auto& list, const std::string& name) {
+    for (const auto& entry : list) {
+      if (entry.name == name) return predict_fronts(entry, kick, 1000, 40, true);
+    }
+    throw std::logic_error("no scheme " + name);
+  };
+  const PredictedFronts euler = damped(schemes::explicit_tableaus(), "explicit_euler");
+  EXPECT_EQ(euler.fronts[1], (InfluenceFront{0, 1}));
+  EXPECT_EQ(euler.fronts[40], (InfluenceFront{39, 40}));
+  EXPECT_EQ(damped(schemes::explicit_tableaus(), "rk4").fronts[1], (InfluenceFront{3, 4}));
+  EXPECT_TRUE(damped(schemes::fully_implicit_tableaus(), "gauss2").whole_system);
+  EXPECT_FALSE(damped(schemes::splitting_schemes(), "symplectic_euler").known);
+}
+
 TEST(InfluenceFront, StopsAtTheEnd) {
   EXPECT_EQ(fronts_of(schemes::explicit_tableaus(), "rk4", kick, 7).fronts[40], (InfluenceFront{7, 7}));
 }

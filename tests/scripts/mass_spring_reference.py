@@ -8,14 +8,24 @@ import tomllib
 
 import numpy as np
 
+from solid_reference import Solid
+
 
 def per_item(value, count):
     """One number for all, or a list with one number per item."""
     return np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy()
 
 
+def solid_force(solid, x, v):
+    """What a solid does to points, of one state (n, 3) or of several (n, 3, b)."""
+    if x.ndim == 2:
+        return solid.force(x, v)
+    return np.stack([solid.force(x[..., k], v[..., k]) for k in range(x.shape[2])], axis=2)
+
+
 class MassSpringModel:
-    """The equations of motion of one scene file: m v' = gravity + drag + springs + dampers, fixed points at rest."""
+    """The equations of motion of one scene file: m v' = gravity + drag + springs + dampers + anchors + obstacles, fixed
+    points at rest."""
 
     def __init__(self, toml_text):
         scene = tomllib.loads(toml_text)
@@ -41,6 +51,13 @@ class MassSpringModel:
         self.incidence[self.between[:, 1], np.arange(number)] -= 1.0
         self.free = np.ones((self.count, 1))
         self.free[self.fixed] = 0.0
+        self.solids = [Solid(entry) for entry in scene.get("obstacle", [])]
+        ties = [(p, entry) for entry in scene.get("anchor", []) for p in np.atleast_1d(entry["particle"])]
+        self.anchored = np.array([p for p, _ in ties], dtype=int)
+        self.anchor_stiffness = np.array([entry["stiffness"] for _, entry in ties], dtype=float)
+        self.anchor_damping = np.array([entry.get("damping", 0.0) for _, entry in ties], dtype=float)
+        self.anchor_position = np.array([entry.get("position", self.position[p]) for p, entry in ties],
+                                        dtype=float).reshape(-1, 3)
         self.solutions = {}
 
     def spring_columns(self, group):
@@ -80,6 +97,12 @@ class MassSpringModel:
                    + column(self.damping) * (w * r).sum(axis=1, keepdims=True))
         total = along(self.incidence, tension * r)
         total += column(self.mass) * self.gravity.reshape(1, 3, *ones) - self.drag * v
+        if len(self.anchored) > 0:
+            pull = (column(self.anchor_stiffness) * (x[self.anchored] - self.anchor_position.reshape(-1, 3, *ones))
+                    + column(self.anchor_damping) * v[self.anchored])
+            np.subtract.at(total, self.anchored, pull)
+        for solid in self.solids:
+            total = total + solid_force(solid, x, v)
         return total * column(self.free)
 
     def rate(self, y):
@@ -97,6 +120,8 @@ class MassSpringModel:
         """A bound [1/s] of the eigenvalues' size at the rest lengths: springs by Gershgorin, dampers and drag alike."""
         stiffness = np.abs(self.incidence) @ self.effective_stiffness()
         damping = np.abs(self.incidence) @ self.damping
+        np.add.at(stiffness, self.anchored, self.anchor_stiffness)
+        np.add.at(damping, self.anchored, self.anchor_damping)
         return float(np.sqrt(2.0 * (stiffness / self.mass).max()) + (2.0 * damping / self.mass).max()
                      + (self.drag / self.mass).max())
 
@@ -104,12 +129,27 @@ class MassSpringModel:
         return 0.5 * float((self.mass[:, None] * v * v).sum())
 
     def potential_energy(self, x):
-        """Springs (half k elongation^2, only stretched ones for tension_only) and gravity, zero at the origin."""
+        """Gravity, zero at the origin, and `elastic_energy`."""
+        return self.elastic_energy(x) - float((self.mass[:, None] * x * self.gravity).sum())
+
+    def dissipated_power(self, x, v):
+        """What dampers, drag and damped obstacles take: all forces that velocities add, times the velocity."""
+        return float(((self.force(x, np.zeros_like(v)) - self.force(x, v)) * v).sum())
+
+    def has_velocity_forces(self):
+        return bool(self.damping.any() or self.anchor_damping.any() or self.drag > 0.0
+                    or any(solid.damping > 0.0 for solid in self.solids))
+
+    def elastic_energy(self, x):
+        """Springs (half k elongation^2, only stretched ones for tension_only), anchors and obstacles."""
         length = np.sqrt(((self.incidence.T @ x) ** 2).sum(axis=1))
         elongation = length - self.rest_length
         elongation = np.where((self.law == "tension_only") & (elongation < 0.0), 0.0, elongation)
         elastic = 0.5 * float((self.effective_stiffness() * elongation**2).sum())
-        return elastic - float((self.mass[:, None] * x * self.gravity).sum())
+        offset = x[self.anchored] - self.anchor_position
+        elastic += 0.5 * float((self.anchor_stiffness[:, None] * offset**2).sum())
+        moving = self.free[:, 0] > 0.0
+        return elastic + sum(solid.energy(x[moving]) for solid in self.solids)
 
     def linear_momentum(self, v):
         return (self.mass[:, None] * v).sum(axis=0)
@@ -144,13 +184,14 @@ def extrapolation_step(rate, y, step):
     return row[-1], row[-1] - row[-2]
 
 
-def integrate(rate, y0, times, tolerance=1e-13):
+def integrate(rate, y0, times, tolerance=1e-13, longest=np.inf):
     """States at the given times (the first is the start); `rate` takes several states at once, in a last axis of their
     own. The tolerance is relative to the largest entry of x and of v so far, at least 1 each; a step over a kink of the
-    force is halved until its error is as small as any other."""
+    force is halved until its error is as small as any other. No step is longer than `longest`, so that none passes over
+    a solid unseen."""
     states, y, t = [y0], y0, float(times[0])
     scale = np.maximum(1.0, np.abs(y0).max(axis=(1, 2)))
-    step = 1e-3 * (times[-1] - times[0])
+    step = min(1e-3 * (times[-1] - times[0]), longest)
     for target in times[1:]:
         while t < target:
             # a remainder close to the step is taken whole, so that no sliver is left before a frame
@@ -170,7 +211,7 @@ def integrate(rate, y0, times, tolerance=1e-13):
                 continue
             t, y = (float(target) if last else t + trial), result
             scale = np.maximum(scale, np.abs(y).max(axis=(1, 2)))
-            step = max(step, trial * factor) if last else trial * factor
+            step = min(max(step, trial * factor) if last else trial * factor, longest)
         states.append(y)
     return np.array(states)
 

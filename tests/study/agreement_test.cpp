@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "mechanics/mass_spring_system.hpp"
 #include "memory_archive.hpp"
+#include "paths.hpp"
 #include "seeded_catalog.hpp"
 #include "study/runner.hpp"
 
@@ -92,6 +93,17 @@ TEST(Agreement, SeesASolverWhoseStiffnessIsOffByAHundredThousandth) {
   // It disagrees with the reference and with rk4, which agree with each other.
   EXPECT_EQ(values<std::int64_t>(result, "agrees"),
             (std::vector<std::int64_t>{-1, 1, 0, 1, -1, 0, 0, 0, -1}));
+}
+
+TEST(Agreement, BelievesEstimatesLessWhereForcesHaveKinks) {
+  const std::string rope =
+      "scene = \"" + fw::test::source_directory() + "/studies/scenes/short_rope.toml\"\nt_end = 0.43\n";
+  const auto judged = [&](double factor) {
+    const Seeds seeds{{"wrong", [=] { return std::make_unique<SolverOfAnotherSystem>(factor); }}};
+    return run("\"dormand_prince_54\", \"wrong\"", rope, seeds, "").cases.front();
+  };
+  EXPECT_EQ(judged(1.0 + 1e-2).verdict, Verdict::fails) << judged(1.0 + 1e-2).reason;
+  EXPECT_NE(judged(1.0).verdict, Verdict::fails) << judged(1.0).reason;
 }
 
 TEST(Agreement, NamesMethodsThatStayTooInaccurateAndLeavesOutThoseThatCannotRun) {

@@ -208,6 +208,17 @@ TEST(Convergence, IsNotApplicableWhereNothingCanBeMeasured) {
   EXPECT_EQ(kinks.verdict, Verdict::not_applicable) << kinks.reason;
 }
 
+TEST(Convergence, OfOneHalfAboveTheClaimLeavesTheVerdictToTheOther) {
+  // From rest, symplectic Euler's velocities have order 2: J (0, a(x0)) = (v, a)(T) along the flow.
+  const std::string pendulum =
+      "[world]\ngravity = [0, 0, -9.81]\n[particles]\nposition = [[0, 0, 0], [1.1, 0, 0.2]]\nmass = "
+      "0.7\nfixed = "
+      "[0]\n[springs]\nbetween = [[0, 1]]\nrest_length = 1.0\nstiffness = 90.0\n";
+  const CaseResult result = order_on("symplectic_euler", pendulum, 0.7);
+  EXPECT_EQ(result.verdict, Verdict::holds) << result.reason;
+  EXPECT_THAT(result.reason, HasSubstr("terms of the error of the velocity vanish"));
+}
+
 TEST(Convergence, SaysNotApplicableForAMechanicalSchemeOnAFirstOrderEquation) {
   const StudyResult result = run_text(
       convergence_spec("\"velocity_verlet\"", "name = \"rotation\"\nt_end = 2.3\n"), SeededCatalog({}));

@@ -270,6 +270,40 @@ TEST(Energy, ThatIsGoneDoesNotDrift) {
   EXPECT_TRUE(std::isnan(figure(result, "relative_drift"))) << figure(result, "relative_drift");
 }
 
+TEST(Energy, OfASymplecticSchemeMayMoveWithASlowMotion) {
+  // Free fall under symplectic Euler: the error of the energy is -h/2 m g.v, as one-sided as the fall itself.
+  const std::string fall =
+      "[world]\ngravity = [0, 0, -9.81]\n[particles]\nposition = [[0, 0, 0]]\nmass = 1.0\n";
+  const std::string keys = "steps = [0.02, 0.01, 0.005]\nstep_count = 1000\n";
+  const CaseResult falling = energy_of("symplectic_euler", fall, keys, 10.0);
+  EXPECT_EQ(falling.verdict, Verdict::not_applicable) << falling.reason;
+  EXPECT_THAT(falling.reason, HasSubstr("more steps tell"));
+  // A pendulum seen for a quarter of its swing, its spring for thousands of periods.
+  const CaseResult quarter =
+      energy_of("velocity_verlet", pendulum(0.0), "steps = [0.0004]\nstep_count = 1000\n", 10.0);
+  EXPECT_NE(quarter.verdict, Verdict::fails) << quarter.reason;
+}
+
+TEST(Energy, CatchesASecularDriftThatLasts) {
+  Seeds seeds;
+  seeds["lossy"] = [] {
+    return seeded_scheme(
+        {.name = "lossy", .order = 2, .is_symplectic = true, .needs = {Capability::second_order}},
+        [](auto& s, double t, double h, VectorRef q, VectorRef v, Vector&) {
+          v += 0.5 * h * acceleration(s, t, q, v);
+          q += h * v;
+          v += 0.5 * h * acceleration(s, t + h, q, v);
+          v *= 1.0 - 1e-6;
+        });
+  };
+  const CaseResult result =
+      run_study(spec("\"lossy\"", "steps = [0.2, 0.1]\nstep_count = 20000\n", henon_heiles),
+                SeededCatalog(seeds, {{"lossy", "velocity_verlet"}}))
+          .cases.front();
+  EXPECT_EQ(result.verdict, Verdict::fails) << result.reason;
+  EXPECT_THAT(result.reason, HasSubstr("FAILS: no secular drift"));
+}
+
 /// A mass that hits a soft plane with a damper.
 const std::string impact =
     "[particles]\nposition = [[0, 0, 1]]\nvelocity = [[0, 0, -2]]\nmass = 0.5\n[[obstacle]]\nshape = "

@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "seeded_catalog.hpp"
 #include "seeded_schemes.hpp"
@@ -71,6 +74,25 @@ TEST(Propagation, FollowsTheSpringsOfAScene) {
   for (const CaseResult& entry : result.cases)
     EXPECT_EQ(entry.verdict, Verdict::holds) << entry.id << ": " << entry.reason;
   EXPECT_TRUE(std::isnan(figure(result.cases[0], "physical_wave_speed")));
+}
+
+TEST(Propagation, GoesThroughDampersInTheSameStep) {
+  const std::filesystem::path path = std::filesystem::temp_directory_path() /
+                                     ("federwerk_propagation_" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(path)
+      << "[generate]\nkind = \"chain\"\ncount = 30\nspacing = 1.0\nmass = 0.5\nstiffness = 20.0\n"
+         "damping = 3.0\n";
+  const StudyResult result =
+      run_study(spec("\"explicit_euler\", \"rk4\", \"symplectic_euler\", \"velocity_verlet\"", "",
+                     "scene = \"" + path.string() + "\"\nt_end = 1.0\n"),
+                SeededCatalog({}));
+  std::filesystem::remove(path);
+  EXPECT_EQ(result.cases[0].verdict, Verdict::holds) << result.cases[0].reason;
+  EXPECT_EQ(result.cases[1].verdict, Verdict::holds) << result.cases[1].reason;
+  for (const std::size_t k : {2u, 3u}) {
+    EXPECT_NE(result.cases[k].verdict, Verdict::fails)
+        << result.cases[k].id << ": " << result.cases[k].reason;
+  }
 }
 
 /// Velocity Verlet that evaluates its force once more per step, and one whose force lags a step behind.

@@ -29,17 +29,21 @@ class SeededStepper final : public integrators::Stepper {
   Vector memory_;
 };
 
-inline std::unique_ptr<Integrator> seeded_scheme(std::string name, int order, SeededStepper::Step step) {
-  MethodInfo info{.name = name,
-                  .title = name,
-                  .family = "seeded",
-                  .order = order,
-                  .order_with_velocity_forces = order,
-                  .needs = {Capability::second_order}};
+inline std::unique_ptr<Integrator> seeded_scheme(MethodInfo info, SeededStepper::Step step) {
   return std::make_unique<integrators::FixedStepIntegrator>(
       std::move(info), [step](const Ivp& ivp, double, Work&) -> std::unique_ptr<integrators::Stepper> {
         return std::make_unique<SeededStepper>(ivp, step);
       });
+}
+
+inline std::unique_ptr<Integrator> seeded_scheme(std::string name, int order, SeededStepper::Step step) {
+  return seeded_scheme(MethodInfo{.name = name,
+                                  .title = name,
+                                  .family = "seeded",
+                                  .order = order,
+                                  .order_with_velocity_forces = order,
+                                  .needs = {Capability::second_order}},
+                       std::move(step));
 }
 
 }  // namespace fw::study

@@ -106,6 +106,20 @@ TEST(Stiffness, FailsAnExplicitSchemeThatStabilityDoesNotLimitAsItShould) {
   EXPECT_EQ(find(study, "rk4-cost").verdict, Verdict::fails) << find(study, "rk4-cost").reason;
 }
 
+TEST(Stiffness, DoesNotJudgeStepsThatAccuracyLimits) {
+  // The slow end: the first run does, or its error is what takes steps; |lambda| h stays far inside the interval.
+  const StudyResult study =
+      run(spec("\"rk4\", \"heun3\"", "cost", "-0.1, -0.2, -0.4, -0.8", "target_error = 1e-9\n"),
+          SeededCatalog({}));
+  const StudyResult loose =
+      run(spec("\"rk4\"", "cost", "-0.1, -0.2, -0.4, -0.8", "target_error = 0.5\n"), SeededCatalog({}));
+  EXPECT_EQ(find(study, "rk4-cost").verdict, Verdict::not_applicable) << find(study, "rk4-cost").reason;
+  EXPECT_EQ(find(study, "heun3-cost").verdict, Verdict::not_applicable) << find(study, "heun3-cost").reason;
+  EXPECT_EQ(find(loose, "rk4-cost").verdict, Verdict::not_applicable) << find(loose, "rk4-cost").reason;
+  EXPECT_THAT(find(loose, "rk4-cost").reason,
+              testing::AnyOf(HasSubstr("no coarser run"), HasSubstr("where accuracy does")));
+}
+
 TEST(Stiffness, FindsWhereImplicitStepsBeginToPay) {
   const StudyResult study = run(
       spec("\"rk4\", \"implicit_euler\"", "cost", "-1.0, -1e1, -1e2, -1e3, -1e4, -1e5"), SeededCatalog({}));

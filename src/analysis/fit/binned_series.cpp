@@ -74,6 +74,12 @@ double Drift::significance() const {
   return change == 0.0 ? 0.0 : change / oscillation;
 }
 
+bool Drift::has_long_batches() const {
+  constexpr double lower_bound = 1.2;
+  const double trend_in_batch = 0.5 * std::abs(slope) * duration / static_cast<double>(batches - 1);
+  return oscillation > 2.0 * trend_in_batch && independence >= lower_bound;
+}
+
 bool Drift::is_significant(std::size_t tests) const {
   const double quantile =
       gsl_cdf_tdist_Pinv(1.0 - 0.025 / static_cast<double>(tests), static_cast<double>(batches - 2));
@@ -108,6 +114,14 @@ Drift fit_drift(const BinnedSeries& series, std::uint64_t batches) {
   double intercept = 0.0, cov00 = 0.0, cov01 = 0.0, cov11 = 0.0, sum_squares = 0.0;
   gsl_fit_linear(times.data(), 1, means.data(), 1, n, &intercept, &drift.slope, &cov00, &cov01, &cov11,
                  &sum_squares);
+  double squares = 0.0, differences = 0.0, before = 0.0;
+  for (std::size_t b = 0; b < n; ++b) {
+    const double residual = means[b] - intercept - drift.slope * times[b];
+    squares += residual * residual;
+    if (b > 0) differences += (residual - before) * (residual - before);
+    before = residual;
+  }
+  if (squares > 0.0) drift.independence = differences / squares;
   drift.batches = static_cast<int>(n);
   drift.standard_error = std::sqrt(cov11);
   const double half_width = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n - 2)) * drift.standard_error;

@@ -49,6 +49,9 @@ struct Drift {
   double slope_high = 0.0;
   double oscillation = 0.0;     ///< the median over the batches of half of largest − least
   double standard_error = 0.0;  ///< of the slope
+  /// Durbin and Watson's ratio of the residuals of the means: near 2 where they are independent, near 0 where they
+  /// follow a curve; 2 where there are none.
+  double independence = 2.0;
   int batches = 0;
   double duration = 0.0;  ///< between the first and last batch's mean time
 
@@ -57,6 +60,10 @@ struct Drift {
   bool is_significant(std::size_t tests) const;
   /// |slope|·duration/oscillation: how far the trend stands out; 0 where both vanish.
   double significance() const;
+  /// Whether batches are long against the motion, which the interval of the slope takes for granted: values
+  /// oscillate inside each by more than the trend alone moves them, and the residuals of the means are
+  /// independent of each other [Durbin, Watson 1951; lower bound at 5 % for 20 means].
+  bool has_long_batches() const;
 };
 
 /// Fits the trend to the means of at most `batches` batches of neighbouring bins, each long against the

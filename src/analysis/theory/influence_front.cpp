@@ -7,7 +7,7 @@ namespace fw::analysis {
 
 namespace {
 
-/// The front of a force evaluated at positions with this front.
+/// The front of a force evaluated at positions (or, by dampers, velocities) with this front.
 int force_front(int position) {
   return position < 0 ? -1 : position + 1;
 }
@@ -15,7 +15,14 @@ int force_front(int position) {
 /// One step; empty where the scheme is implicit.
 using Advance = std::optional<InfluenceFront>;
 
-Advance advance(const schemes::TableauValues<Float128>& t, InfluenceFront state) {
+/// A Runge–Kutta method, and whether springs have dampers.
+struct DampedTableau {
+  const schemes::TableauValues<Float128>& values;
+  bool dampers;
+};
+
+Advance advance(const DampedTableau& scheme, InfluenceFront state) {
+  const schemes::TableauValues<Float128>& t = scheme.values;
   std::vector<InfluenceFront> slopes;
   for (int i = 0; i < t.stages; ++i) {
     InfluenceFront stage = state;
@@ -26,7 +33,8 @@ Advance advance(const schemes::TableauValues<Float128>& t, InfluenceFront state)
       stage.position = std::max(stage.position, slope.position);
       stage.velocity = std::max(stage.velocity, slope.velocity);
     }
-    slopes.push_back({stage.velocity, force_front(stage.position)});
+    const int force = scheme.dampers ? std::max(stage.position, stage.velocity) : stage.position;
+    slopes.push_back({stage.velocity, force_front(force)});
   }
   InfluenceFront next = state;
   for (std::size_t i = 0; i < slopes.size(); ++i) {
@@ -84,18 +92,22 @@ struct Predict {
   InfluenceFront start;
   int farthest;
   std::uint64_t steps;
+  bool dampers;
 
   template <class Other>
   PredictedFronts operator()(const Other&) const {
     return {};
   }
   PredictedFronts operator()(const schemes::ButcherTableau& tableau) const {
-    return follow(schemes::values<Float128>(tableau), start, farthest, steps);
+    const schemes::TableauValues<Float128> values = schemes::values<Float128>(tableau);
+    return follow(DampedTableau{values, dampers}, start, farthest, steps);
   }
   PredictedFronts operator()(const schemes::NystromTableau& tableau) const {
+    if (dampers) return {};
     return follow(schemes::values<Float128>(tableau), start, farthest, steps);
   }
   PredictedFronts operator()(const schemes::SplittingScheme& scheme) const {
+    if (dampers) return {};
     return follow(scheme, start, farthest, steps);
   }
 };
@@ -103,8 +115,8 @@ struct Predict {
 }  // namespace
 
 PredictedFronts predict_fronts(const schemes::SchemeData& data, InfluenceFront start, int farthest,
-                               std::uint64_t steps) {
-  return std::visit(Predict{start, farthest, steps}, data);
+                               std::uint64_t steps, bool dampers) {
+  return std::visit(Predict{start, farthest, steps, dampers}, data);
 }
 
 }  // namespace fw::analysis

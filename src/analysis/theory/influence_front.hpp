@@ -21,12 +21,14 @@ struct PredictedFronts {
   std::vector<InfluenceFront> fronts{};  ///< after 0, 1, … steps; empty where implicit
 };
 
-/// The fronts of an explicit scheme on springs without dampers, by counting how force evaluations are chained
-/// in its stages: a velocity takes the front of the positions at which its force is evaluated one spring
-/// further, a position takes over that of the velocity. A coefficient that is zero passes nothing on. `start`
-/// is what is disturbed before the first step; no front goes further than `farthest`. That no two
-/// contributions cancel is taken for granted: true for rounding arithmetic outside accidents.
+/// The fronts of an explicit scheme on springs, by counting how force evaluations are chained in its stages: a
+/// velocity takes the front of the positions at which its force is evaluated one spring further, with `dampers`
+/// in the springs that of the velocities as well, a position takes over that of the velocity. A coefficient that
+/// is zero passes nothing on. `start` is what is disturbed before the first step; no front goes further than
+/// `farthest`. That no two contributions cancel is taken for granted: true for rounding arithmetic outside
+/// accidents. With `dampers` only Runge–Kutta methods are known: Nyström and splitting schemes have more than one
+/// way to treat a force that depends on the velocity, and their coefficients do not tell which.
 PredictedFronts predict_fronts(const schemes::SchemeData& data, InfluenceFront start, int farthest,
-                               std::uint64_t steps);
+                               std::uint64_t steps, bool dampers = false);
 
 }  // namespace fw::analysis

@@ -127,13 +127,32 @@ double predicted_limit(const SchemeGrowth& growth, const LinearModes& modes,
   if (modes.is_undamped && growth.grows_at_every_step()) return 0.0;
   const bool is_whole = growth.is_of_whole_step(modes, system);
   const double allowed = 1.0 + resolved_growth(growth, is_whole, is_explicit);
-  return largest_stable_step([&](double step) { return growth_at(step) <= allowed; },
-                             {.first = first,
-                              .ratio = is_whole                                      ? 1.05
-                                       : growth.basis() == GrowthBasis::single_steps ? 1.01
-                                                                                     : 1.002,
-                              .farthest = farthest,
-                              .resolution = 1e-5});
+  constexpr double resolution = 1e-5, fine = 1.002;
+  const auto is_stable = [&](double step) { return growth_at(step) <= allowed; };
+  const double limit =
+      largest_stable_step(is_stable, {.first = first,
+                                      .ratio = is_whole                                      ? 1.05
+                                               : growth.basis() == GrowthBasis::single_steps ? 1.01
+                                                                                             : fine,
+                                      .farthest = farthest,
+                                      .resolution = resolution});
+  if (!is_whole || !(limit > 0.0)) return limit;
+  // Such steps are too dear to lie closer, and stability of a splitting may end with a narrow gap. With dampers it
+  // lies where it does without, if they leave any of it.
+  const auto is_stable_undamped = [&](double step) {
+    return std::all_of(modes.vibrations.begin(), modes.vibrations.end(), [&](const VibrationMode& mode) {
+      return growth.of_vibration(step * step * mode.omega_squared, 0.0) <= allowed;
+    });
+  };
+  const double gap = largest_stable_step(
+      is_stable_undamped, {.first = first, .ratio = fine, .farthest = farthest, .resolution = resolution});
+  constexpr double before = 0.98, behind = 1.03;
+  if (!(gap > 0.0) || !(before * gap < limit)) return limit;
+  const double in_gap = largest_stable_step(is_stable, {.first = before * gap,
+                                                        .ratio = fine,
+                                                        .farthest = std::min(behind * gap, limit),
+                                                        .resolution = resolution});
+  return std::min(in_gap, limit);
 }
 
 GrowthExperiment::GrowthExperiment(std::shared_ptr<const Integrator> integrator,

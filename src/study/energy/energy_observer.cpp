@@ -11,6 +11,7 @@ namespace fw::study {
 
 WatchedProblem::WatchedProblem(const StudyProblem& entry) : gauge(entry.problem), springs(gauge.springs()) {
   const Problem& problem = entry.problem;
+  system = problem.ivp.system->second_order();
   if (springs != nullptr) {
     const Index n = springs->degrees_of_freedom();
     quantity = "energy";
@@ -37,6 +38,11 @@ WatchedProblem::WatchedProblem(const StudyProblem& entry) : gauge(entry.problem)
   if (is_isolated_spring) frequency = problem.stiffness();
 }
 
+double WatchedProblem::motion(ConstVectorRef y) const {
+  if (system == nullptr) return y.squaredNorm();
+  return 0.5 * system->mass().dot(y.tail(system->degrees_of_freedom()).cwiseAbs2());
+}
+
 EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFunction modified, double step,
                                std::uint64_t steps, std::uint64_t bins)
     : watched_(watched),
@@ -45,8 +51,16 @@ EnergyObserver::EnergyObserver(const WatchedProblem& watched, analysis::EnergyFu
       steps_(steps),
       bins_(std::min(bins, steps + 1)),
       outer_work_(watched.springs),
-      change_(steps + 1, bins) {
+      change_(steps + 1, bins),
+      motion_(steps + 1, bins) {
   const auto series = [&] { return analysis::BinnedSeries(steps + 1, bins); };
+  // A force evaluation each is as much as a step of a symplectic scheme costs.
+  constexpr std::uint64_t long_run = 16'000, stride = 16;
+  if (steps > long_run) stride_ = stride;
+  if (watched.system != nullptr) {
+    activity_ = analysis::BinnedSeries(steps / stride_ + 1, bins);
+    force_.resize(watched.system->degrees_of_freedom());
+  }
   if (watched.is_isolated_spring) logarithm_ = series();
   if (modified_) modified_change_ = series();
   if (watched.is_free) {
@@ -84,6 +98,7 @@ bool EnergyObserver::observe(const StepView& view) {
   steps_taken_ = view.index;
   const double change = energy - first_;
   change_.add(view.time, change);
+  watch_motion(view);
   // What has decayed so far says nothing more: squares of it leave the range of doubles.
   constexpr double decayed = 1e-100;
   if (logarithm_ && energy > decayed * first_)
@@ -96,6 +111,16 @@ bool EnergyObserver::observe(const StepView& view) {
       watch_work(view, view.state.head(n), view.state.tail(n), change);
   }
   return true;
+}
+
+void EnergyObserver::watch_motion(const StepView& view) {
+  motion_.add(view.time, watched_.motion(view.state));
+  if (!activity_ || view.index % stride_ != 0) return;
+  const Index n = force_.size();
+  watched_.system->force(view.time, view.state.head(n), view.state.tail(n), force_);
+  double sum = 0.0;
+  for (Index i = 0; i < n; ++i) sum += force_[i] * force_[i] / watched_.system->mass()[i];
+  activity_->add(view.time, sum);
 }
 
 void EnergyObserver::watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v) {

@@ -27,6 +27,11 @@ struct WatchedProblem {
   bool is_isolated_spring = false;  ///< one frequency ω, see `frequency`
   double frequency = 0.0;           ///< ω of a harmonic oscillator or rotation [1/s]
 
+  const SecondOrderSystem* system = nullptr;  ///< null: no M q̈ = f
+
+  /// Kinetic energy, of other systems than M q̈ = f the square of the state.
+  double motion(ConstVectorRef y) const;
+
   /// Throws InputError where there is nothing to watch.
   explicit WatchedProblem(const StudyProblem& entry);
 };
@@ -46,6 +51,11 @@ class EnergyObserver final : public Observer {
   double scale() const { return budget_.scale(); }
   std::uint64_t steps_taken() const { return steps_taken_; }
   const analysis::BinnedSeries& change() const { return change_; }  ///< E_n − E_0
+  /// `WatchedProblem::motion`, for its trend.
+  const analysis::BinnedSeries& motion() const { return motion_; }
+  /// fᵀM⁻¹f [J/s²] of M q̈ = f, of long runs at some of the steps: the energies of fast vibrations weigh more in it
+  /// than those of slow ones, as they do in the error of the energy. Empty for other systems.
+  const std::optional<analysis::BinnedSeries>& activity() const { return activity_; }
   /// ln(E_n/E_0) over n; empty where the energy is not positive.
   const std::optional<analysis::BinnedSeries>& logarithm() const { return logarithm_; }
   const std::optional<analysis::BinnedSeries>& modified_change() const { return modified_change_; }
@@ -62,6 +72,7 @@ class EnergyObserver final : public Observer {
  private:
   void watch_momenta(const StepView& view, ConstVectorRef q, ConstVectorRef v);
   void watch_work(const StepView& view, ConstVectorRef q, ConstVectorRef v, double change);
+  void watch_motion(const StepView& view);
   void watch_size(const StepView& view, double value);
   bool ends_bin(const StepView& view) const;
 
@@ -73,7 +84,10 @@ class EnergyObserver final : public Observer {
   OuterWork outer_work_;
   double first_ = 0.0, modified_start_ = 0.0;
   std::uint64_t steps_taken_ = 0;
-  analysis::BinnedSeries change_;
+  analysis::BinnedSeries change_, motion_;
+  std::optional<analysis::BinnedSeries> activity_;
+  std::uint64_t stride_ = 1;  ///< steps from one value of the activity to the next
+  Vector force_;
   std::optional<analysis::BinnedSeries> logarithm_, modified_change_, momentum_change_, angular_change_;
   Vec3<double> momentum_start_{}, angular_start_{};
   double momentum_scale_ = 0.0, angular_scale_ = 0.0;

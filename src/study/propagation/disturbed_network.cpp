@@ -106,6 +106,8 @@ DisturbedNetwork disturb(const StudyProblem& problem, std::int64_t mass, bool ki
   } else {
     const mechanics::Springs& given = scene->model().springs;
     for (std::size_t e = 0; e < given.size(); ++e) springs.emplace_back(given.first[e], given.second[e]);
+    network.has_dampers =
+        std::any_of(given.damping.begin(), given.damping.end(), [](double c) { return c > 0.0; });
     fixed = scene->model().fixed;
     if (std::find(fixed.begin(), fixed.end(), static_cast<int>(network.disturbed)) != fixed.end()) {
       throw InputError(fmt::format("problem \"{}\": mass {} is fixed, expected one that moves", problem.label,

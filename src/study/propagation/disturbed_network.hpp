@@ -13,7 +13,8 @@ struct DisturbedNetwork {
   Index disturbed = 0;        ///< the mass
   std::vector<int> distance;  ///< springs from the disturbed mass; −1 where none lead there over free masses
   int farthest = 0;
-  bool is_kicked = true;  ///< a velocity is given, else a displacement
+  bool is_kicked = true;     ///< a velocity is given, else a displacement
+  bool has_dampers = false;  ///< in springs of a scene
   /// √(k/m) of a linear chain: springs per second that long waves travel; NaN of scenes.
   double wave_speed = 0.0;
 

@@ -216,9 +216,14 @@ class Ladder {
       return conclude(
           fmt::format("{}, above {}: superconvergence on a linear problem", found, expected_order()));
     }
-    const bool holds = std::abs(excess) <= settings_.tolerance;
-    return conclude(fmt::format("{}, predicted {} within {:g}", found, expected_order(), settings_.tolerance),
-                    holds ? Verdict::holds : Verdict::fails);
+    const std::string claim =
+        fmt::format("{}, predicted {} within {:g}", found, expected_order(), settings_.tolerance);
+    if (std::abs(excess) <= settings_.tolerance) return conclude(claim, Verdict::holds);
+    const auto predicted = static_cast<double>(expected_order());
+    const bool is_refuted = fit_.order_low > predicted + settings_.tolerance ||
+                            fit_.order_high < predicted - settings_.tolerance;
+    return is_refuted ? conclude(claim, Verdict::fails)
+                      : conclude(claim + "; not decided: the interval reaches into the tolerance");
   }
 
   CaseResult conclude(std::string reason, Verdict verdict = Verdict::not_applicable) const {
