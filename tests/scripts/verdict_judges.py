@@ -253,7 +253,8 @@ class Judge:
             mine = (energy.min() - energy[0], energy.max() - energy[0])
             magnitude = np.abs(truth.model.mass[:, None] * states[:, 0] * truth.model.gravity).sum(axis=(1, 2)).max()
             rough = 1e-10 * (size + np.ptp(energy) + magnitude) * min(truth.amplification, 1e4)
-            if truth.amplification < 100 and max(abs(np.subtract(found, mine))) > 1e3 * rough:
+            # beyond, steps are too long for the motion, and chaos multiplies rounding
+            if truth.amplification < 100 and np.ptp(energy) < 3.0 * size and max(abs(np.subtract(found, mine))) > 1e3 * rough:
                 self.contradict(row, f"energy changes in {found} at h = {step:.3g}, by independent runs {mine}")
             if truth.model.has_velocity_forces():
                 defects.append((step, abs(truth.balance(states, step)[-1]), rough))
@@ -284,7 +285,8 @@ class Judge:
                 self.contradict(row, "holds with the limit 0, but a small step is stable")
         elif np.isfinite(limit):
             below, above = truth.growth(method, 0.975 * limit), truth.growth(method, 1.025 * limit)
-            if below > 1.0 + 1e-6 or above < 1.0 + 1e-7:
+            least = 1e-11 if "too weak" in row["reason"] else 1e-7
+            if below > 1.0 + 1e-6 or above < 1.0 + least:
                 self.contradict(row, f"holds with the limit {limit:.4g} s, growth is {below:.8f} below and {above:.8f} above it")
 
     def stiffness(self, row, case, spec):

@@ -220,8 +220,8 @@ class Ladder {
         fmt::format("{}, predicted {} within {:g}", found, expected_order(), settings_.tolerance);
     if (std::abs(excess) <= settings_.tolerance) return conclude(claim, Verdict::holds);
     const auto predicted = static_cast<double>(expected_order());
-    const bool is_refuted = fit_.order_low > predicted + settings_.tolerance ||
-                            fit_.order_high < predicted - settings_.tolerance;
+    const bool is_refuted =
+        fit_.order_low > predicted + settings_.tolerance || fit_.order_high < predicted - settings_.tolerance;
     return is_refuted ? conclude(claim, Verdict::fails)
                       : conclude(claim + "; not decided: the interval reaches into the tolerance");
   }
