@@ -88,7 +88,7 @@ class Campaign:
         return str(path)
 
     def run(self):
-        self.results = run(self.folder, self.studies)
+        self.results = run(self.folder, self.studies) if self.studies else {}
         for kind, result in self.results.items():
             counts[kind, "studies"] += 1
             for row in result.rows:
