@@ -40,10 +40,9 @@ double EnergyBudget::growth_factor() const {
 }
 
 bool EnergyBudget::has_exploded() const {
-  // One step of explicit Euler from rest gains all that there is, n steps 1/n of it: a single step tells
-  // nothing, a few have to grow by more.
-  constexpr std::uint64_t one_step = 2, few = 10;
-  const double share = states_ > few ? 0.99 : 0.999;
+  constexpr double share = 0.99;
+  // One step of explicit Euler from rest gains all that there is and tells nothing; n of them gain 1/(2n − 1).
+  constexpr std::uint64_t one_step = 2;
   // A system at rest gains what rounding leaves: jitter that adds up for a while.
   constexpr double rounding = 1e-9, added_up = 1e6;
   return states_ > one_step && gain_ > rounding * magnitude() + added_up * jitter_ && gain_ >= share * scale_;

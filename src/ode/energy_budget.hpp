@@ -40,7 +40,7 @@ class EnergyBudget {
 
   /// By how much the energy has multiplied without any source: scale/(scale − gain), 1 where nothing was gained.
   double growth_factor() const;
-  /// Whether 99 % of the energy and more (99.9 % over ten states or fewer) has come from nowhere, over two steps
+  /// Whether 99 % of the energy and more has come from nowhere, over two steps
   /// or more and beyond what rounding does to a system at rest. What outer sources other than gravity give is told by `add_work`;
   /// dampers can only take.
   bool has_exploded() const;

@@ -205,7 +205,7 @@ class Judge:
 
     def work_precision(self, row, case, spec):
         truth, method = self.truth, row["method"]
-        if "step" not in case or truth.stepper(method) is None or row["control"] != "fixed" or not len(case["step"]):
+        if truth.stepper(method) is None or row["control"] != "fixed" or not len(case.get("step", [])):
             return
         k = len(case["step"]) // 2
         count = round(truth.end / case["step"][k])
@@ -253,7 +253,8 @@ class Judge:
             mine = (energy.min() - energy[0], energy.max() - energy[0])
             magnitude = np.abs(truth.model.mass[:, None] * states[:, 0] * truth.model.gravity).sum(axis=(1, 2)).max()
             rough = 1e-10 * (size + np.ptp(energy) + magnitude) * min(truth.amplification, 1e4)
-            if truth.amplification < 100 and max(abs(np.subtract(found, mine))) > 1e3 * rough:
+            # beyond, steps are too long for the motion, and chaos multiplies rounding
+            if truth.amplification < 100 and np.ptp(energy) < 3.0 * size and max(abs(np.subtract(found, mine))) > 1e3 * rough:
                 self.contradict(row, f"energy changes in {found} at h = {step:.3g}, by independent runs {mine}")
             if truth.model.has_velocity_forces():
                 defects.append((step, abs(truth.balance(states, step)[-1]), rough))
@@ -284,7 +285,8 @@ class Judge:
                 self.contradict(row, "holds with the limit 0, but a small step is stable")
         elif np.isfinite(limit):
             below, above = truth.growth(method, 0.975 * limit), truth.growth(method, 1.025 * limit)
-            if below > 1.0 + 1e-6 or above < 1.0 + 1e-7:
+            least = 1e-11 if "too weak" in row["reason"] else 1e-7
+            if below > 1.0 + 1e-6 or above < 1.0 + least:
                 self.contradict(row, f"holds with the limit {limit:.4g} s, growth is {below:.8f} below and {above:.8f} above it")
 
     def stiffness(self, row, case, spec):
@@ -351,15 +353,15 @@ class Judge:
         for _ in range(model.count):
             for i, j in model.between:
                 for a, b in ((i, j), (j, i)):
-                    if distance[a] >= 0 and (distance[b] < 0 or distance[b] > distance[a] + 1):
+                    if distance[a] >= 0 and model.free[b] and (distance[b] < 0 or distance[b] > distance[a] + 1):
                         distance[b] = distance[a] + 1
         for n in range(1, len(case["time"])):
             y = truth.stepper(method)(model, y, row["step"])
-            # a fixed particle has no velocity of its own
-            moved = (np.abs(y[0] - model.position).max(axis=1) > 0.0)
-            front = distance[moved].max(initial=-1)
-            if front > case["front_position"][n] or (case["front_position"][n] > front and n == 1):
-                self.contradict(row, f"holds, the front is at {front} after {n} steps, found {case['front_position'][n]}")
+            # small displacements are lost in positions, small velocities are not
+            front = distance[np.abs(y[1]).max(axis=1) > 0.0].max(initial=-1)
+            if front != case["front_velocity"][n]:
+                self.contradict(row, f"holds, velocities are {front} springs away after {n} steps, found "
+                                     f"{case['front_velocity'][n]}")
                 return
 
     def dissipation(self, row, case, spec):

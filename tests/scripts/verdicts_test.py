@@ -28,7 +28,7 @@ import verdict_scenes  # noqa: E402
 from verdict_truth import Linearised, Truth  # noqa: E402
 from verdict_variants import variants  # noqa: E402
 
-FEW = (1, 4, 9, 15)  # damped, violent, generated, free flight
+FEW = (4, 9, 15)  # violent, generated, free flight
 settings = argparse.Namespace(federwerk=os.environ.get("FEDERWERK_EXECUTABLE"), count=0, first=0, seed=20261128, kinds="",
                               keep="")
 counts = collections.Counter()
@@ -88,7 +88,7 @@ class Campaign:
         return str(path)
 
     def run(self):
-        self.results = run(self.folder, self.studies)
+        self.results = run(self.folder, self.studies) if self.studies else {}
         for kind, result in self.results.items():
             counts[kind, "studies"] += 1
             for row in result.rows:
@@ -154,7 +154,7 @@ class EnergyVerdicts(Federwerk):
     METHODS = ["rk4", "symplectic_euler", "velocity_verlet", "implicit_midpoint", "implicit_euler", "heun"]
 
     def test_do_not_depend_on_the_frame_or_the_units(self):
-        indices = range(settings.first, settings.first + settings.count) if settings.count else (1, 4, 5, 17)
+        indices = range(settings.first, settings.first + settings.count) if settings.count else (4, 5, 11)
         seen = collections.Counter()
         for index in indices:
             character, scene, end = verdict_scenes.random_case(settings.seed, index)

@@ -44,8 +44,10 @@ StateScale measure_scale(const Ivp& ivp, const analysis::ReferenceState& referen
     const double change = root_mean_square(end.head(n) - ivp.y0.head(n));
     const double size = root_mean_square(end.head(n));
     scale.position = positive_or_one(std::max(change, 1e-3 * size));
-    scale.velocity =
-        positive_or_one(std::max(root_mean_square(end.tail(n)), root_mean_square(ivp.y0.tail(n))));
+    // Velocities that the last digits of positions make are those of a system at rest.
+    constexpr double last_digits = 1e4 * std::numeric_limits<double>::epsilon();
+    const double speed = std::max(root_mean_square(end.tail(n)), root_mean_square(ivp.y0.tail(n)));
+    scale.velocity = positive_or_one(speed * (ivp.t1 - ivp.t0) > last_digits * size ? speed : 0.0);
   }
   return scale;
 }
