@@ -265,7 +265,10 @@ LinearStability linear_stability(const StabilityFunction& R) {
     return magnitude <= 1.0 + slack;
   };
   result.real_interval = first_failure([&](double x) { return stable_at(-x); }, 1e-3, far);
-  result.imaginary_interval = first_failure(stable_on_axis, 1e-6, far);
+  // Without a negative coefficient no sum is negative: no point has to be tried (as for most A-stable schemes).
+  const bool is_never_negative = std::all_of(e.begin(), e.end(), [](const Float128& c) { return c >= 0; });
+  result.imaginary_interval =
+      is_never_negative ? std::numeric_limits<double>::infinity() : first_failure(stable_on_axis, 1e-6, far);
   const std::size_t p = R.numerator.size(), q = R.denominator.size();
   result.at_infinity = p > q   ? std::numeric_limits<double>::infinity()
                        : p < q ? 0.0

@@ -50,21 +50,26 @@ struct Stirring {
   }
 };
 
-/// Function::of(t), remembered for some thousand times per thread: the place of a time follows from its bits, and a new
-/// time takes the place of an old one. In binary128 sines are half of a verification, and most are asked for again:
-/// an implicit step evaluates its stages at one time until they have converged, and the members of an ensemble run
-/// over the same steps.
-template <class Function>
-const std::array<Float128, 2>& remembered(const Float128& t) {
+/// Function::of(t), remembered for some thousand times per thread: the place of a time follows from its bits,
+/// and a new time takes the place of an old one. In binary128 sines are half of a verification, and most are
+/// asked for again: an implicit step evaluates its stages at one time until they have converged, and the members
+/// of an ensemble run over the same steps. Complex ones are for the columns of a Jacobian, all at one time.
+template <class Function, class S>
+const std::array<S, 2>& remembered(const S& t) {
   using Bits = std::array<std::uint64_t, 2>;
   struct Entry {
     bool is_known = false;
     Bits time{};
-    std::array<Float128, 2> values{};
+    std::array<S, 2> values{};
   };
-  constexpr int index_bits = 14;
+  constexpr int index_bits = std::is_same_v<S, Float128> ? 14 : 3;
   thread_local std::vector<Entry> entries(std::size_t{1} << index_bits);
-  const Bits time = std::bit_cast<Bits>(t.backend().value());
+  Bits time;
+  if constexpr (std::is_same_v<S, Float128>) {
+    time = std::bit_cast<Bits>(t.backend().value());
+  } else {
+    time = {std::bit_cast<std::uint64_t>(t.real()), std::bit_cast<std::uint64_t>(t.imag())};
+  }
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15;  // Fibonacci hashing: 2^64 over the golden ratio
   Entry& entry = entries[((time[0] ^ std::rotl(time[1], 29)) * odd) >> (64 - index_bits)];
   if (!entry.is_known || entry.time != time) entry = {true, time, Function::of(t)};
@@ -74,8 +79,10 @@ const std::array<Float128, 2>& remembered(const Float128& t) {
 /// Function::of(t).
 template <class Function, class S>
 std::array<S, 2> at(const S& t) {
-  if constexpr (std::is_same_v<S, Float128>) return remembered<Function>(t);
-  return Function::of(t);
+  if constexpr (std::is_same_v<S, double>)
+    return Function::of(t);
+  else
+    return remembered<Function>(t);
 }
 
 struct DrivenForce {
