@@ -4,6 +4,7 @@
 
 #include "implicit_problems.hpp"
 #include "network.hpp"
+#include "problems/oscillators.hpp"
 
 namespace fw::integrators {
 namespace {
@@ -118,6 +119,23 @@ TEST(FullyImplicit, DampsStiffComponentsWhereItIsLStable) {
   for (const std::string name : {"gauss2", "gauss3", "lobatto_iiia3"}) {
     const Solution solution = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, 0.1);
     EXPECT_GT(std::abs(solution.state[0] - prothero_robinson_end()), 0.5) << name;
+  }
+}
+
+TEST(FullyImplicit, KeepsTheEnergyAtStepsFarBeyondAPeriod) {
+  Problem problem = problems::harmonic_oscillator();
+  const double omega = problem.stiffness();
+  const auto energy = [&](const Vector& y) { return problem.invariants.front().value(0.0, y); };
+  for (const std::string name : {"gauss2", "gauss3", "lobatto_iiia3", "lobatto_iiia4"}) {
+    for (const double z : {1e2, 1e3, 1e4, 1e5}) {
+      Ivp ivp = problem.ivp;
+      const double h = z / omega;
+      ivp.t1 = ivp.t0 + 3.0 * h;
+      const Vector end = run(*make_fully_implicit_runge_kutta(tableau_named(name)), ivp, h).state;
+      const double start = energy(ivp.y0);
+      // Accelerations times h² cancel to the state: ε z².
+      EXPECT_LE(std::abs(energy(end) - start), 1e-14 * z * z * start) << name << ", h omega = " << z;
+    }
   }
 }
 
