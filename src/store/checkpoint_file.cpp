@@ -87,7 +87,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   }
   if (!text.starts_with(first_line)) {
     const std::string version = text.substr(family.size(), text.find('\n') - family.size()).substr(0, 20);
-    throw InputError(fmt::format("{}: found version \"{}\" of the format, expected 1", name, version));
+    throw InputError(fmt::format("{}: found version \"{}\" of the format, expected 2", name, version));
   }
   switch (check_seal(*file)) {
     case SealState::intact:

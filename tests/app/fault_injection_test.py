@@ -245,7 +245,7 @@ class FaultInjection(unittest.TestCase):
 
     def test_ends_with_one_message_on_a_disk_of_one_mebibyte_and_goes_on_with_room(self):
         # The cases are of 400 KB each; the file system exists for the children of `unshare` only.
-        self.write(study(problems=6, steps="[1e-3]").replace("frames = 11", "frames = 20000").replace("1e-3", "5e-5"))
+        self.write(study(problems=6, steps="[1e-3]").replace("frames = 11", "frames = 10000").replace("1e-3", "1e-4"))
         script = ("mkdir -p r && mount -t tmpfs -o size=1m none r && "
                   '{ "$0" run s.toml -o r; code=$?; cp -r r kept; exit $code; }')
         answer = subprocess.run(["unshare", "--mount", "--map-root-user", "sh", "-c", script, OPTIONS.federwerk],

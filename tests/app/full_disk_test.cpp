@@ -25,7 +25,7 @@ const std::string cloth =
 const std::vector<std::string> simulate = {
     "simulate", "s.toml", "--method", "symplectic_euler", "--step", "0.001", "--t-end", "0.1", "-o", "a.h5"};
 constexpr const char* study =
-    "kind = 'simulate'\ntitle = 'T'\nmethods = ['rk4', 'heun']\nsteps = [1e-4]\nframes = 40000\n"
+    "kind = 'simulate'\ntitle = 'T'\nmethods = ['rk4', 'heun']\nsteps = [1e-4]\nframes = 22000\n"
     "[[problem]]\nname = 'harmonic_oscillator'\nt_end = 10\n";
 
 /// Mounts an empty file system of `size` at `place`, seen by this process and its children only.

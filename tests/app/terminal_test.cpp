@@ -75,7 +75,7 @@ TEST(Terminal, LongWorkSaysHowFarItIsWhereThereIsNoTerminal) {
   const ScratchDirectory scratch;
   write_bytes(scratch / "s.toml",
               "kind = 'convergence'\ntitle = 'orders'\nmethods = ['rk4']\n[convergence]\nlevels = 6\n"
-              "[[problem]]\nname = 'spring_pendulum'\nt_end = 5.0\n");
+              "[[problem]]\nname = 'spring_pendulum'\nt_end = 20.0\n");
   const std::string cache = (scratch / "cache").string();
   const auto with_progress = [&](const char* seconds) {
     return run(scratch.path(), {"run", "s.toml", "-o", ".", "--force"}, [&] {

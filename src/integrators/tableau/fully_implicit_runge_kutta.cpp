@@ -202,7 +202,7 @@ class SecondOrderStepper final : public CoupledStepper {
   /// state: far beyond the stiffness that a step resolves the accelerations of Newton's iteration are the better
   /// ones, ε (hω)².
   bool are_forces_known(double h) {
-    constexpr double largest_defect = 1e-11;
+    constexpr double largest_defect = 1e-9;
     double defect = 0.0;
     for (std::size_t i = 0; i < tableau_.stages(); ++i) {
       defect = std::max(defect, h * h * (acceleration(i) - slope(i)).lpNorm<Eigen::Infinity>());

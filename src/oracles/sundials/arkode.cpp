@@ -31,8 +31,8 @@ class ArkodeStepper final : public ForeignStepper {
         check_stall_(ivp.t0),
         state_(ivp.y0),
         context_(make_context()),
-        state_vector_(wrap_state(state_, integrators::has_particles(*ivp.system), VectorOperations::eigen,
-                                 context_.get())),
+        state_vector_(wrap_state(state_, is_adaptive_ && integrators::has_particles(*ivp.system),
+                                 VectorOperations::eigen, context_.get())),
         ark_(ivp.t0, state_vector_.get(), explicit_part(tables, *ivp.system),
              implicit_part(tables, *ivp.system), tables, report_, work, context_.get()) {
     if (is_adaptive_) {

@@ -6,10 +6,8 @@
 #include <limits>
 
 #include "core/error.hpp"
-#include "integrators/loop/particle_norm.hpp"
 #include "oracles/foreign_stepper.hpp"
 #include "oracles/sundials/ark_step_memory.hpp"
-#include "oracles/sundials/eigen_vector.hpp"
 
 namespace fw::oracles {
 
@@ -54,8 +52,7 @@ class MriStepper final : public ForeignStepper {
         state_(ivp.y0),
         slow_{make_soft_right_hand_part(*ivp.system->second_order()), ivp.y0.size(), report_, work},
         context_(make_context()),
-        state_vector_(wrap_state(state_, integrators::has_particles(*ivp.system), VectorOperations::eigen,
-                                 context_.get())),
+        state_vector_(wrap_eigen_vector(state_, context_.get())),
         inner_(ivp.t0, state_vector_.get(), fast_part(ivp, !options.inner_is_implicit),
                fast_part(ivp, options.inner_is_implicit), tables, report_, work, context_.get()),
         inner_stepper_(inner_stepper(inner_.get())),

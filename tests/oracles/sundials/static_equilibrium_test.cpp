@@ -107,7 +107,7 @@ void expect_end_of_damped_motion(const std::string& generate, double drag, doubl
   NullObserver observer;
   const Solution damped =
       make_cvode_bdf({.tolerance_factor = 1.0})
-          ->solve(ivp, AdaptiveStep{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-8}, observer);
+          ->solve(ivp, AdaptiveStep{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-9}, observer);
   ASSERT_TRUE(damped.status.ok()) << damped.status.describe();
   ASSERT_LT(damped.state.tail(n).lpNorm<Eigen::Infinity>(), 1e-7) << "the simulation still moves";
   EXPECT_LT((damped.state.head(n) - equilibrium.position).lpNorm<Eigen::Infinity>(), 1e-5);
