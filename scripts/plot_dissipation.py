@@ -46,8 +46,10 @@ def signed_curve(panel, z, values, measured, style, width=1.7):
     for sign, line_width in ((1, width), (-1, 0.55 * width)):
         part = numpy.where(sign * known > FLOOR, numpy.abs(known), numpy.nan)
         panel.loglog(z, part, linewidth=line_width, **style)
-    # A zero of theory is measured as the rounding of a double root.
-    is_there = (numpy.abs(measured) > FLOOR) & ~(numpy.abs(known) <= FLOOR)
+    # A double root is known to the root of the rounding only: a zero of theory that is none at a single point is no curve.
+    has_value = numpy.abs(known) > FLOOR
+    has_neighbour = numpy.convolve(has_value, [1, 0, 1], mode="same") > 0
+    is_there = (numpy.abs(measured) > FLOOR) & has_value & (has_neighbour if z.size > 1 else True)
     shown = numpy.where(is_there, numpy.abs(measured), numpy.nan)
     every = max(1, z.size // MOST_MARKERS)
     panel.loglog(z[::every], shown[::every], linestyle="none", marker="o", markersize=4, color=style["color"])
