@@ -37,7 +37,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
   }
   compare(arguments.has_frames, "--frames", arguments.frames, static_cast<std::int64_t>(from.frames));
   if (const auto* fixed = std::get_if<FixedStep>(&from.control)) {
-    if (arguments.has_relative || arguments.has_absolute) {
+    if (arguments.has_relative || arguments.has_absolute || arguments.has_velocity_tolerance) {
       throw InputError(fmt::format("found tolerances, expected --step {} as in the checkpoint \"{}\"",
                                    fixed->step, arguments.continued));
     }
@@ -53,7 +53,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     }
     compare(arguments.has_relative, "--rtol", arguments.relative_tolerance, adaptive.relative_tolerance);
     compare(arguments.has_absolute, "--atol", arguments.absolute_tolerance, adaptive.absolute_tolerance);
-    compare(arguments.velocity_tolerance != 0.0, "--atol-velocity", arguments.velocity_tolerance,
+    compare(arguments.has_velocity_tolerance, "--atol-velocity", arguments.velocity_tolerance,
             adaptive.absolute_velocity_tolerance);
     compare(std::isfinite(arguments.maximum_step), "--maximum-step", arguments.maximum_step,
             adaptive.maximum_step);
@@ -62,6 +62,7 @@ void take_from_checkpoint(const store::Checkpoint& from, SimulateArguments& argu
     arguments.absolute_tolerance = adaptive.absolute_tolerance;
     arguments.velocity_tolerance = adaptive.absolute_velocity_tolerance;
     arguments.has_relative = arguments.has_absolute = true;
+    arguments.has_velocity_tolerance = adaptive.absolute_velocity_tolerance > 0.0;
   }
   arguments.scene = from.scene_name;
   arguments.method = from.method;

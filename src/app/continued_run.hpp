@@ -17,9 +17,10 @@ struct SimulateArguments {
   std::string scene, method, output, petsc, checkpoint, continued, from;
   std::vector<std::string> log_at, stop_at;
   double step = 0.0, relative_tolerance = 0.0, absolute_tolerance = 0.0, end_time = 0.0, every = 0.0;
-  double velocity_tolerance = 0.0;  ///< absolute; 0: as the other one
+  double velocity_tolerance = 0.0;  ///< absolute
   double maximum_step = std::numeric_limits<double>::infinity();
-  bool has_step = false, has_relative = false, has_absolute = false, xdmf = false, has_petsc = false;
+  bool has_step = false, has_relative = false, has_absolute = false, has_velocity_tolerance = false,
+       xdmf = false, has_petsc = false;
   bool has_end_time = false, has_frames = false, has_every = false;
   std::int64_t frames = record::default_frames;
 };

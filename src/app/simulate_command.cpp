@@ -60,8 +60,8 @@ class SimulationObserver final : public Observer {
 };
 
 StepControl step_control(const SimulateArguments& arguments, const MethodInfo& info) {
-  const bool has_velocity_tolerance = arguments.velocity_tolerance != 0.0;
-  const bool has_tolerances = arguments.has_relative || arguments.has_absolute || has_velocity_tolerance;
+  const bool has_tolerances =
+      arguments.has_relative || arguments.has_absolute || arguments.has_velocity_tolerance;
   if (arguments.has_step && std::isfinite(arguments.maximum_step))
     throw InputError("found --step and --maximum-step, expected one of them");
   if (arguments.has_step && has_tolerances)
@@ -85,7 +85,7 @@ StepControl step_control(const SimulateArguments& arguments, const MethodInfo& i
     };
     check("--rtol", arguments.relative_tolerance);
     check("--atol", arguments.absolute_tolerance);
-    if (has_velocity_tolerance) check("--atol-velocity", arguments.velocity_tolerance);
+    if (arguments.has_velocity_tolerance) check("--atol-velocity", arguments.velocity_tolerance);
     if (!(arguments.maximum_step > 0.0)) {
       throw InputError(
           fmt::format("--maximum-step: found {}, expected a number of seconds > 0", arguments.maximum_step));
@@ -299,10 +299,11 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
           ->add_option("--atol", arguments->absolute_tolerance,
                        "Absolute tolerance of an adaptive method, of positions [m] and velocities [m/s]")
           ->type_name("A");
-  command
-      ->add_option("--atol-velocity", arguments->velocity_tolerance,
-                   "Absolute tolerance of velocities [m/s] where it is another number")
-      ->type_name("A");
+  CLI::Option* velocity =
+      command
+          ->add_option("--atol-velocity", arguments->velocity_tolerance,
+                       "Absolute tolerance of velocities [m/s] where it is another number")
+          ->type_name("A");
   command
       ->add_option("--maximum-step", arguments->maximum_step,
                    "Longest step [s] of an adaptive method, own or foreign; default: none")
@@ -372,6 +373,7 @@ void add_simulate_command(CLI::App& app, Action& action, const std::string& comm
     arguments->has_petsc = petsc->count() > 0;
     arguments->has_relative = relative->count() > 0;
     arguments->has_absolute = absolute->count() > 0;
+    arguments->has_velocity_tolerance = velocity->count() > 0;
     action = [arguments, command_line] { return simulate(*arguments, command_line); };
   });
 }

@@ -142,6 +142,23 @@ TEST(SchemeGrowth, OfTheWholeStepIsThatOfSingleStepsWhereDampersCouple) {
   }
 }
 
+TEST(PredictedLimit, OfASplittingWithCoupledDampersEndsAtItsNarrowGap) {
+  // Yoshida's sixth-order scheme is unstable for h omega from 2.269 to 2.328 and stable beyond, up to 2.8.
+  const Problem cloth = problems::cloth({{"count", 3.0}, {"damping", 1e-4}});
+  const SecondOrderSystem& system = *cloth.ivp.system->second_order();
+  const Index n = system.degrees_of_freedom();
+  const auto linear =
+      std::make_shared<const LinearisedSystem>(system, 0.0, cloth.ivp.y0.head(n), cloth.ivp.y0.tail(n));
+  const LinearModes modes = linear_modes(*linear, 0.0, Vector::Zero(2 * n), 100);
+  ASSERT_GT(modes.coupling, 1e-6);
+  const SchemeGrowth growth = splitting("yoshida6");
+  const double unit = 1.0 / modes.spectral_radius;
+  const double limit = predicted_limit(growth, modes, linear, true, 0.05 * unit, 1000.0 * unit);
+  EXPECT_NEAR(limit / unit, 2.269, 0.01);
+  EXPECT_LE(growth.of_system(modes, 0.998 * limit, linear), 1.0 + 1e-6);
+  EXPECT_GT(growth.of_system(modes, 1.005 * limit, linear), 1.0 + 1e-6);
+}
+
 TEST(LinearModes, OfAChainAreThoseInClosedForm) {
   const Problem chain = problems::linear_chain({{"count", 6.0}, {"mass", 0.5}, {"stiffness", 30.0}});
   const LinearModes modes = linear_modes(*chain.ivp.system, 0.0, chain.ivp.y0, 100);

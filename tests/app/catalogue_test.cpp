@@ -159,6 +159,10 @@ TEST(Describe, OfOneNameIsOneEntryAndOfSeveralTheirList) {
   const ScratchDirectory scratch;
   const std::string first = run(scratch.path(), {"describe", "rk4"}).out;
   const std::string second = run(scratch.path(), {"describe", "dahlquist"}).out;
+  EXPECT_THAT(run(scratch.path(), {"describe", "velocity_verlet"}).out,
+              HasSubstr("with dampers             1 of 2 kicks solves a sparse system for the velocity\n"));
+  EXPECT_THAT(run(scratch.path(), {"describe", "symplectic_euler"}).out,
+              HasSubstr("with dampers             explicit\n"));
   EXPECT_EQ(run(scratch.path(), {"describe", "rk4", "dahlquist"}).out, first + "\n" + second);
   with_json({"describe", "rk4", "--json"}, "assert x['name'] == 'rk4', x\n");
   with_json({"describe", "rk4", "dahlquist", "--json"},

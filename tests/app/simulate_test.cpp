@@ -351,5 +351,31 @@ TEST_F(Simulate, SpeaksOfLostEnergyWhereAnyForceDependsOnVelocities) {
   EXPECT_THAT(shown("[world]\ndrag = 0.5\n" + undamped), Not(HasSubstr("energy drift")));
 }
 
+TEST_F(Simulate, GivesVelocitiesAToleranceOfTheirOwn) {
+  const Words common = {"--method", "dormand_prince_54", "--rtol", "1e-12", "--atol", "1e-3", "--t-end", "1"};
+  const auto with = [&](const std::string& output, const Words& more) {
+    Words words = common;
+    words.insert(words.end(), more.begin(), more.end());
+    return simulate(output, words);
+  };
+  EXPECT_EQ(with("a.h5", {}).exit_code, 0);
+  EXPECT_EQ(with("b.h5", {"--atol-velocity", "1e-3"}).exit_code, 0);
+  EXPECT_EQ(with("c.h5", {"--atol-velocity", "1e-9"}).exit_code, 0);
+  inspect("assert np.array_equal(f['trajectory/position'], g['trajectory/position'])\n",
+          {file("a.h5"), file("b.h5")});
+  inspect("assert g['counters/accepted_steps'][()] > 1.5 * f['counters/accepted_steps'][()]\n",
+          {file("a.h5"), file("c.h5")});
+  for (const char* bad : {"0", "-1e-3", "nan", "inf"}) {
+    const ProcessResult refused = with("d.h5", {"--atol-velocity", bad});
+    EXPECT_EQ(refused.exit_code, 2) << bad;
+    EXPECT_THAT(refused.err, HasSubstr("--atol-velocity: found ")) << bad;
+  }
+  const ProcessResult fixed =
+      simulate("d.h5", {"--method", "rk4", "--step", "0.1", "--t-end", "1", "--atol-velocity", "1e-3"});
+  EXPECT_EQ(fixed.exit_code, 2);
+  EXPECT_THAT(fixed.err, HasSubstr("found --step and tolerances"));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "d.h5"));
+}
+
 }  // namespace
 }  // namespace fw::app::test

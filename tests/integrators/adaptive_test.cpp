@@ -380,24 +380,5 @@ TEST(AdaptiveLoop, DenseOutputMeetsTheEndsOfItsStep) {
   }
 }
 
-TEST(AdaptiveLoop, RefusesTolerancesAndLimitsThatMakeNoSense) {
-  NullObserver nobody;
-  const auto scheme = method("dormand_prince_54");
-  const double nan = std::nan("");
-  const std::vector<AdaptiveStep> bad = {
-      {.relative_tolerance = 0.0},
-      {.relative_tolerance = nan},
-      {.absolute_tolerance = -1.0},
-      {.initial_step = -1.0},
-      {.initial_step = nan},
-      {.minimum_step = -1.0},
-      {.minimum_step = 1.0, .maximum_step = 0.5},
-      {.initial_step = 0.1, .minimum_step = 0.2},
-  };
-  for (const AdaptiveStep& control : bad)
-    EXPECT_THROW(scheme->solve(circle(1.0), control, nobody), InputError);
-  EXPECT_THROW(method("rk4")->solve(circle(1.0), AdaptiveStep{}, nobody), InputError);
-}
-
 }  // namespace
 }  // namespace fw::integrators
