@@ -47,8 +47,7 @@ StepAdvice advise_on_step(const std::string& call, double step, const mechanics:
   if (step > stable.step) {
     advice.warning = fmt::format(
         "the step {} s is above the largest stable one at the start, {:.3g} s in theory: expect growth; take "
-        "a "
-        "shorter step or an implicit method",
+        "a shorter step or an implicit method",
         step, stable.step);
   }
   return advice;

@@ -69,10 +69,10 @@ Crossing zero_of(const Points& points, double shift) {
 }  // namespace
 
 LawJudgement judge_exponent(const PowerLaw& law, double expected, double tolerance) {
-  constexpr double widest = 0.3;
   const bool contains = law.exponent_low <= expected && expected <= law.exponent_high;
   if (!contains && !(std::abs(law.exponent - expected) <= tolerance)) return LawJudgement::refuted;
-  const bool is_narrow = law.exponent_low >= expected - widest && law.exponent_high <= expected + widest;
+  const bool is_narrow =
+      law.exponent_low >= expected - decisive_distance && law.exponent_high <= expected + decisive_distance;
   return is_narrow ? LawJudgement::supported : LawJudgement::open;
 }
 

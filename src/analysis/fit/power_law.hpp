@@ -22,11 +22,14 @@ struct PowerLaw {
 /// Fits all points with finite positive x and y. What belongs into the fit is the caller's to decide.
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
+/// An interval of an exponent that reaches further than this from the expected one supports nothing.
+inline constexpr double decisive_distance = 0.3;
+
 /// What a fitted exponent says of one that theory gives.
 enum class LawJudgement { supported, refuted, open };
 
 /// supported: the exponent is within `tolerance` of the expected one or its interval contains that, and the
-/// interval reaches no further than 0.3 from it; refuted: neither within the tolerance nor contained; open: the
+/// interval reaches no further than `decisive_distance` from it; refuted: neither within the tolerance nor contained; open: the
 /// interval is too wide to tell. `law` is valid.
 LawJudgement judge_exponent(const PowerLaw& law, double expected, double tolerance);
 

@@ -168,8 +168,8 @@ class PropagationCase {
       if (differing == 0 && lost > 0) {
         texts.push_back(fmt::format(
             "{:.3g} springs per step; velocities are where they are predicted, displacements at {} of {} "
-            "steps not "
-            "yet: below the last digit of a position they are lost, larger steps or fewer show them",
+            "steps not yet: below the last digit of a position they are lost, larger steps or fewer show "
+            "them",
             velocity_rate, lost, seen_.fronts.size() - 1));
       } else {
         require(differing == 0,
@@ -177,8 +177,7 @@ class PropagationCase {
                     ? fmt::format("{:.3g} springs per step, front as predicted at each of {} steps",
                                   velocity_rate, seen_.fronts.size() - 1)
                     : fmt::format("{:.3g} springs per step; after step {} velocities are {} springs away and "
-                                  "positions {}, "
-                                  "predicted {} and {}",
+                                  "positions {}, predicted {} and {}",
                                   velocity_rate, where, seen_.fronts[where].velocity,
                                   seen_.fronts[where].position, predicted_.fronts[where].velocity,
                                   predicted_.fronts[where].position));

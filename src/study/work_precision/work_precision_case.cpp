@@ -9,6 +9,7 @@
 
 #include "analysis/fit/efficiency.hpp"
 #include "analysis/fit/order_fit.hpp"
+#include "analysis/fit/power_law.hpp"
 #include "analysis/theory/linear_modes.hpp"
 #include "analysis/theory/stiffness_measures.hpp"
 #include "core/special_values.hpp"
@@ -218,8 +219,13 @@ class Ladder {
     }
     const std::string claim =
         fmt::format("{}, predicted {} within {:g}", found, expected_order(), settings_.tolerance);
-    if (std::abs(excess) <= settings_.tolerance) return conclude(claim, Verdict::holds);
     const auto predicted = static_cast<double>(expected_order());
+    if (std::abs(excess) <= settings_.tolerance) {
+      const double farthest = std::max(predicted - fit_.order_low, fit_.order_high - predicted);
+      return farthest <= std::max(settings_.tolerance, analysis::decisive_distance)
+                 ? conclude(claim, Verdict::holds)
+                 : conclude(claim + "; not decided: the interval is too wide");
+    }
     const bool is_refuted =
         fit_.order_low > predicted + settings_.tolerance || fit_.order_high < predicted - settings_.tolerance;
     return is_refuted ? conclude(claim, Verdict::fails)
